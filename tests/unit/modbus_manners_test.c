@@ -340,12 +340,14 @@ CASE(a_device_that_falls_silent_is_not_waited_for)
     s->device.silent_unit = 1;
     int requests = s->device.requests;
     await_line("no readings", 20);
-    /* two timeouts and a few reconnects; waiting for a gateway would repeat the second timeout 16 times */
+    /* at most 8 requests: two timeouts and some reconnections. If the device were treated like a gateway, the second request
+       would be repeated 16 times */
     assert_true(s->device.requests - requests <= 8);
     assert_false(quality_is_good(modbus_case_look(s, 0)->quality));
 }
 
-/* A gateway that waits for a dead unit three times as long as our timeout and accepts no other request meanwhile. */
+/* A gateway that waits for its silent unit three times as long as the source's timeout, and accepts no other request meanwhile.
+   The other units must still be read. */
 CASE(a_dead_unit_that_blocks_its_gateway)
 {
     add_blocks(s);
@@ -379,8 +381,8 @@ static void start_gateway(struct modbus_case *s)
         modbus_case_expect(s, i, QUALITY_GOOD, 10);
 }
 
-/* Asserts that all units are lost together, with one log line for the gateway and one for each of the two units asked before,
-   and that all come back. */
+/* Asserts that all units of a gateway become Bad together. The log must have one line for the gateway and one for each of the
+   two units that were tried before. Afterwards all units must become Good again. */
 static void expect_lost_together(struct modbus_case *s)
 {
     await_line("the gateway is treated as lost: 3 units stopped answering one after the other", 60);
@@ -401,7 +403,8 @@ CASE(a_gateway_that_falls_silent_is_told_once_for_all_units)
     int requests = s->device.requests;
     s->device.manner = DEVICE_SILENT;
     await_line("the gateway is treated as lost", 60);
-    /* the second unit is asked for 5 s, as long as a gateway may block; without this limit, each of the eleven would be */
+    /* the second unit is tried for 5 s, as long as a gateway may block; without this limit, each of the eleven other units
+       would be tried as long, with more than 60 requests */
     assert_in_range(s->device.requests - requests, 3, 60);
     expect_lost_together(s);
 }
@@ -413,7 +416,7 @@ CASE(a_gateway_that_reaches_no_unit_is_told_once_for_all_units)
     expect_lost_together(s);
 }
 
-/* Two of twelve units die: the others stay Good all the time. */
+/* Two of a gateway's twelve units stop answering: the ten others must stay Good all the time. */
 CASE(two_dead_units_are_no_lost_gateway)
 {
     start_gateway(s);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The Modbus source against a real Modbus TCP server: the store's readings while devices appear, disappear and misbehave. */
+/* The Modbus source with a simulated Modbus TCP device: which readings the store has while the device appears, disappears and
+   misbehaves. */
 #include "tests/support/test.h"
 #include <arpa/inet.h>
 #include <sys/resource.h>
@@ -112,7 +113,8 @@ CASE(silent_device_loses_the_link_though_it_accepts)
     modbus_case_expect(s, 1, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE, 3);
     assert_false(store_link_is_up(s->store, 0));
     sleep_ns(2 * NS_PER_S);
-    assert_false(store_link_is_up(s->store, 0)); /* an open connection alone does not make the link up */
+    /* the device accepts the connection but does not answer: the source's link must not count as up */
+    assert_false(store_link_is_up(s->store, 0));
     s->device.manner = DEVICE_GOOD;
     modbus_case_expect(s, 1, QUALITY_GOOD, 8);
 }
@@ -132,7 +134,9 @@ CASE(resets_do_no_harm)
 CASE(dripping_device_holds_no_longer_than_the_deadline)
 {
     modbus_case_add_registers(s, 20);
-    s->plant->sources[0].timeout_ms = 1000; /* much shorter than a complete answer, which would take 49 x 0.3 s */
+    /* the device sends its answer byte by byte, 49 x 0.3 s in total: the source must give up after the timeout, although bytes
+       keep arriving */
+    s->plant->sources[0].timeout_ms = 1000;
     s->device.manner = DEVICE_DRIPPING;
     device_start(&s->device);
     int64_t begin_ns = clock_mono_ns();
@@ -147,7 +151,7 @@ CASE(late_reply_does_not_poison)
 {
     modbus_case_be_impatient(s);
     modbus_case_add_registers(s, 1);
-    /* a second block, so that two requests have the same shape */
+    /* a second block of the same size, so that a late answer to one request could be taken for that of the other */
     plant_by_hand_tag(s->plant, "far", TABLE_HOLDING, 500, DATA_INT16);
     s->device.late_ms = 400;                                            /* the timeout is 300 */
     modbus_case_serve(s);
@@ -179,7 +183,8 @@ CASE(reply_sent_twice_does_not_poison)
     }
 }
 
-/* A duplicate reply arrives after the next request, with the previous request's transaction number. */
+/* The device sends each answer twice. The second copy arrives after the next request and has the previous request's transaction
+   number; the source must ignore it and stay connected. */
 CASE(late_twin_of_a_reply_does_not_disconnect)
 {
     modbus_case_add_registers(s, 1);
@@ -267,7 +272,7 @@ CASE(exceptions_become_qualities)
     }
 }
 
-/* A controller that restarts a task refuses one request. */
+/* The device refuses a single request, like a controller that restarts a task. No reading may become Bad. */
 CASE(one_refusal_loses_nothing)
 {
     modbus_case_add_registers(s, 10);
@@ -283,7 +288,8 @@ CASE(one_refusal_loses_nothing)
         }
     }
     assert_int_equal(s->device.refused, 4);
-    assert_int_equal(s->device.most, 10); /* all 10 registers are still read at once: the refusal did not split the block */
+    /* the source still reads all 10 registers with one request: a single refusal must not split the block */
+    assert_int_equal(s->device.most, 10);
 }
 
 CASE(what_was_refused_is_asked_again_after_seconds)
@@ -317,7 +323,7 @@ CASE(busy_is_no_verdict)
     for (int code = 5; code <= 6; code++) { /* acknowledge, busy */
         s->device.bad_code = code;
         int64_t received_ns = modbus_case_look(s, 0)->received_utc_ns;
-        /* Bad due to its age: a refused read does not refresh the reading */
+        /* the reading becomes Bad because it is too old: a refused read must not refresh its age */
         modbus_case_expect(s, 0, QUALITY_BAD_COMMUNICATION_ERROR, 2);
         assert_true(modbus_case_look(s, 0)->received_utc_ns - received_ns < NS_PER_S);
         s->device.bad_code = 0;
@@ -369,7 +375,7 @@ CASE(stops_while_the_device_hangs)
     modbus_case_assert_stops_soon(s);
 }
 
-struct full { /* a listener with a full backlog: new connections wait */
+struct full { /* a listening socket whose backlog is full, so that further connections stay pending */
     int listener, clients[4];
 };
 
@@ -414,7 +420,8 @@ CASE(connecting_ends_by_its_deadline)
     modbus_case_be_impatient(s);
     modbus_case_add_registers(s, 1);
     modbus_case_start(s);
-    modbus_case_expect(s, 0, QUALITY_BAD_NO_COMMUNICATION, 2.5); /* the system's own connect timeout would be two minutes */
+    /* the source must give up soon: without its own limit, connecting would take two minutes until the system's timeout */
+    modbus_case_expect(s, 0, QUALITY_BAD_NO_COMMUNICATION, 2.5);
     full_close(&full);
 }
 
@@ -441,7 +448,8 @@ CASE(two_sources_may_name_one_device)
     assert_int_equal(s->device.connections, 2);
 }
 
-/* libmodbus waits with select(), which fails for descriptors of 1024 and above; a daemon with many viewers has that many. */
+/* The source must connect even if its socket has a descriptor of 1024 or more, as in a daemon with many viewers. libmodbus's
+   own waiting by select() fails for such descriptors. */
 CASE(reconnects_with_a_thousand_files_open)
 {
     enum { FILES = 1100, LOW = 4 };
@@ -459,7 +467,7 @@ CASE(reconnects_with_a_thousand_files_open)
         files[i] = dup(2);
     assert_true(files[FILES - 1] >= 1024);
     device_start(&s->device);
-    for (int i = 0; i < LOW; i++) /* frees descriptors below 1024, which the test device's libmodbus needs, too */
+    for (int i = 0; i < LOW; i++) /* frees low descriptors for the simulated device, which uses libmodbus's select() */
         close(files[i]);
     modbus_case_expect(s, 0, QUALITY_GOOD, 8);
     for (int i = LOW; i < FILES; i++)
@@ -474,7 +482,7 @@ CASE(unknown_kind_is_refused)
     assert_null(source_start(s->log, s->plant, 0, s->store, s->counters));
 }
 
-/* Verifies that the daemon only reads: its objects call no function that writes. */
+/* The daemon must never write to a device: none of its object files may refer to a libmodbus function that writes. */
 TEST(calls_nothing_that_writes)
 {
     static const char *const writers[] = { "modbus_write", "modbus_mask_write", "modbus_send_raw" };

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Findings of --check about the headers of models and of recorded series. */
+/* What `plantcastd --check` finds in the headers of models and of recorded series, which it reads without the rest of these
+   files. */
 #include "tests/support/test.h"
 
 #include "base/text/text.h"
@@ -11,7 +12,8 @@
 
 #define CASE(name) TEST_ON(struct plant_case *c, name, plant_case_set_up, plant_case_tear_down)
 
-/* Two pumps of 743 x 200 x 400 model units, y up, 1,000 apart; the second is rotated by 90 degrees about y and half the size. */
+/* Model of two pumps of 743 x 200 x 400 model units, y axis up, 1,000 units apart. The second pump is rotated by 90 degrees
+   about y and half as large. */
 static const char model[] =
     "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],"
     "\"nodes\":[{\"name\":\"hall\",\"children\":[1,2]},{\"name\":\"P-101A\",\"mesh\":0},"
@@ -81,7 +83,8 @@ TEST_WITH(what_no_memory_holds_is_refused, plant_case_set_up, plant_case_tear_do
     check(c, "  - { id: A, model: h.gltf, nodes: '#1', units: mm }\n  - { id: B, model: h.gltf, nodes: '#1', units: mm }\n", "[]",
           "Tag Name\n", NULL);
     FOUND(c, { "plant.yaml", 0, 0, "3000000000.00 million triangles are too many: " }); /* in memory once */
-    /* a model of 4.67 million triangles; measured: 1.03 GB of memory */
+    /* a model that states 4.67 million triangles, for which preparation was measured to take 1.03 GB: it must be accepted with
+       1.1 GB of memory and not with 1.0 GB */
     huge = test_printf("%.*s00000000%s", (int)(count + 8 - more), more, count + 9);
     memcpy(strstr(huge, "\"count\":") + 8, "14000000", 8);
     temp_write_text(c->folder, "h.gltf", huge);
@@ -110,7 +113,8 @@ CASE(nodes_are_looked_up)
           { "tags.csv", 5, 1, "tag T4: asset A: the model has no node '#9'" });
 }
 
-/* A node without triangles is located at the origin of its frame, as in plantcast-prep. */
+/* A node without triangles counts as located at the origin of its own frame, as in plantcast-prep. Nodes with equal names at
+   the same place are no ambiguity. */
 CASE(nodes_without_triangles_are_compared)
 {
     temp_write_text(c->folder, "n.gltf",
@@ -159,7 +163,8 @@ CASE(transforms_that_cannot_be_prepared_are_refused)
     }
 }
 
-/* Sensor coordinates on the equipment reveal the model's up axis and unit. */
+/* If sensor coordinates lie on the equipment only with another unit or another up axis of the model, --check must suggest
+   these. */
 CASE(sensors_tell_units_and_axes)
 {
     static const struct {
@@ -199,7 +204,7 @@ CASE(series_are_looked_up)
           { "tags.csv", 7, 1, "values.csv has no series 'T6'; did you mean 'T5'?" });
 }
 
-/* A damaged model file is either read or refused with a reason. */
+/* A randomly damaged model file must be read, or refused with a reason. */
 CASE(broken_models_are_refused)
 {
     unsigned seed = 7;

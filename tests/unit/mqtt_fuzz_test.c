@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Replays the seeds of the broker payload fuzzer and random mutations of them. */
+/* Runs the fuzzer of MQTT payloads on its stored seeds and on random changes of them. */
 #include "tests/fuzz/mqtt_fuzz.c"
 
 #include "tests/support/test.h"

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Named views survive a restart, keep their content and share one order; the plant file's views stay as written there. Short
-   links survive a restart, and the newest ones are kept. */
+/* Named views (saved by users or defined in the plant file): they survive a restart, keep their content and have one common
+   order. Views of the plant file stay as written there. Short links (ids for shared views) survive a restart; if there are too
+   many, the newest are kept. */
 #include "tests/support/test.h"
 
 #include <jansson.h>
@@ -49,7 +50,7 @@ static enum refusal_code save(struct named_views_fixture *f, const char *id, con
     return named_views_save(f->views, &edit, "kim", INT64_C(1000000) * NOON_S);
 }
 
-/* Asserts the ids of all views in order, separated by blanks. */
+/* Asserts the ids of all views in their order. expected: the ids, separated by blanks. */
 static void assert_order(struct named_views_fixture *f, const char *expected)
 {
     char found[400] = "";
@@ -79,7 +80,8 @@ CASE(they_are_kept_in_order)
     assert_order(f, "all a b c");
     assert_int_equal(save(f, "a", "A", 2), REFUSAL_NONE);
     assert_order(f, "all b c a");
-    assert_int_equal(save(f, "b", "Other", -1), REFUSAL_NONE); /* a replaced view keeps its position */
+    /* saving under an existing id replaces that view and keeps its place in the order */
+    assert_int_equal(save(f, "b", "Other", -1), REFUSAL_NONE);
     assert_true(named_views_number(f->views) == number + 5);
     open_again(f);
     assert_order(f, "all b c a");
@@ -94,7 +96,7 @@ CASE(what_they_were_is_kept)
     char title[12];
     assert_int_equal(save(f, "a", "0", -1), REFUSAL_NONE);
     assert_int_equal(versions_of(f, "a", 1), 0);
-    /* the same view is saved at another position in the order, which makes no new version */
+    /* saves the same content at another place in the order, which must not count as a new version of the view */
     assert_int_equal(save(f, "a", "0", 0), REFUSAL_NONE);
     assert_int_equal(versions_of(f, "a", 1), 0);
     for (int i = 1; i < 2 * NAMED_VIEW_VERSIONS; i++) {
@@ -113,7 +115,7 @@ CASE(the_plant_file_has_its_own)
     assert_int_equal(save(f, "mine", "Mine", -1), REFUSAL_NONE);
     f->plant.screens.view_count = 0;
     assert_int_equal(save(f, "all", "Mine", -1), REFUSAL_NONE);
-    /* the plant file defines the view "all" again, which replaces the view that a user saved under this id */
+    /* the plant file defines "all" again, which takes precedence over the view that a user saved under the same id */
     f->plant.screens.view_count = 1;
     assert_order(f, "all mine");
 }
@@ -154,7 +156,7 @@ CASE(without_a_folder_none_is_saved)
     struct named_view_edit edit = { .id = "a", .title = "A", .address = "group=t", .at = -1 };
     assert_int_not_equal(named_views_save(views, &edit, "kim", 1), REFUSAL_NONE);
     named_views_close(&views);
-    edit.title[0] = (char)0xff; /* a title of invalid UTF-8 is refused without any change */
+    edit.title[0] = (char)0xff; /* a title with invalid UTF-8 is refused, and nothing is changed */
     assert_int_not_equal(named_views_save(f->views, &edit, "kim", 1), REFUSAL_NONE);
     assert_order(f, "all");
 }
@@ -172,7 +174,8 @@ CASE(a_short_link_depends_on_its_view_and_survives_a_restart)
     assert_int_equal(short_links_share(links, "asset=P-101A", NOON_US + 1, again, NULL), REFUSAL_NONE);
     assert_string_equal(again, id);
     assert_int_equal(short_links_share(links, "asset=P-101A", NOON_US + 2, again, NULL), REFUSAL_NONE);
-    assert_int_equal(short_links_number(links), 2); /* the file was written once more, when the link was first used */
+    /* written twice: when the link was made, and when it was shared again for the first time */
+    assert_int_equal(short_links_number(links), 2);
     assert_int_equal(short_links_share(links, "asset=P-101B", NOON_US, other, NULL), REFUSAL_NONE);
     assert_string_not_equal(other, id);
     short_links_close(&links);
@@ -194,7 +197,7 @@ CASE(an_id_that_another_view_has_gets_longer)
     short_links_close(&links);
 }
 
-/* Shares `count` different views, numbered from `first`, each of them only once. */
+/* Makes `count` short links, each for a different view that is shared once, 2 s apart. */
 static void share_many(struct short_links *links, int first, int count)
 {
     char id[SHORT_LINK_ID_BYTES], view[40];
@@ -211,7 +214,7 @@ CASE(a_further_short_link_replaces_the_one_unused_for_longest)
     assert_int_equal(short_links_share(links, "asset=first", NOON_US, first, NULL), REFUSAL_NONE);
     assert_int_equal(short_links_share(links, "asset=second", NOON_US, second, NULL), REFUSAL_NONE);
     share_many(links, 2, SHORT_LINKS - 2);
-    /* the first link is used a day later */
+    /* the first link is shared again a day later, which makes it one of the newest */
     assert_int_equal(short_links_share(links, "asset=first", NOON_US + DAY_US, id, NULL), REFUSAL_NONE);
     assert_int_equal(short_links_share(links, "asset=another", NOON_US + DAY_US, id, NULL), REFUSAL_NONE);
     assert_int_equal(json_array_size(short_links_list(links)), SHORT_LINKS);

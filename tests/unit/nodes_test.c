@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Patterns of model nodes: which nodes they select and name. */
+/* Patterns that select nodes of a model by their names: which nodes they select, and what is reported for patterns without a
+   match. */
 #include "tests/support/test.h"
 
 #include "plant/models/nodes.h"
 
-/* The tree: site / area1 / (P-1 / motor, P-2 / motor), area2 / (unnamed with mesh "vessel", "#0", "a/b", "P-3" with two instances) */
+/* Tree of the test model: site / area1 / (P-1 / motor, P-2 / motor), area2 / (an unnamed node with the mesh "vessel", "a/b",
+   and "P-3" with two instances of its own name) */
 static const struct model_node nodes[] = {
     { "site", "", -1, 12, 20 },        { "area1", "", 0, 6, 21 },     { "P-1", "pump", 1, 4, 22 }, { "motor", "motor_m", 2, 4, 23 },
     { "P-2", "pump", 1, 6, 24 },       { "motor", "motor_m", 4, 6, 25 }, { "area2", "", 0, 12, 26 },  { "", "vessel", 6, 8, 0 },
@@ -12,7 +14,7 @@ static const struct model_node nodes[] = {
 };
 enum { COUNT = sizeof(nodes) / sizeof(*nodes) };
 
-/* Returns the selected nodes' indices as letters, from "a" on. */
+/* Returns the selected nodes' indices as letters (a: 0, b: 1 and so on), or the error message. */
 static const char *taken(const char *patterns)
 {
     static char text[COUNT + 1], why[300];
@@ -51,7 +53,7 @@ TEST(patterns_take_sub_trees_and_leave_others_out)
     assert_string_equal(taken("/site/*/P-?/motor"), "df");
     assert_string_equal(taken("/site/**/motor"), "df");
     assert_string_equal(taken("/**/P-3"), "jkl");
-    assert_string_equal(taken("a/b"), "i"); /* a pattern that equals a name literally selects that node */
+    assert_string_equal(taken("a/b"), "i"); /* the name contains a slash; a pattern that equals a name exactly selects that node */
     assert_string_equal(taken("site\n!area*"), "a");
 }
 
@@ -72,7 +74,7 @@ TEST(single_nodes_are_found_however_they_are_named)
     assert_string_equal(found("P-1/motor"), "d");
     assert_string_equal(found("#25"), "f");
     assert_string_equal(found("mesh:vessel"), "h");
-    assert_string_equal(found("P-3"), "j"); /* both instances belong to one node */
+    assert_string_equal(found("P-3"), "j"); /* "P-3" and its two instances count as one node */
     assert_string_equal(found("motr"), "the model has no node 'motr': did you mean 'motor'?");
     assert_string_equal(found("!P-1"), "the model has no node '!P-1': did you mean 'P-1'?");
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Notes survive a restart, expire or are ended by hand, and are limited in number; those active during a shift can be listed. */
+/* Notes of users survive a restart, end by themselves or are ended by a user, and are limited in number. The notes that were
+   active during a shift can be listed. */
 #include "tests/support/test.h"
 
 #include <errno.h>
@@ -44,7 +45,7 @@ static enum refusal_code add(struct notes_fixture *f, const char *text, int64_t 
     return notes_add(f->notes, &(struct note){ .text = text, .tag = "TI-1", .until_us = until_us }, "kim", at_us, f->id);
 }
 
-/* Consumes the message `text` and asserts the texts of its notes, separated by blanks. */
+/* Frees the message `text`, and asserts which notes it contains. expected: their texts, separated by blanks. */
 static void assert_notes(char *text, const char *expected)
 {
     char found[400] = "";
@@ -66,7 +67,7 @@ CASE(they_end_by_their_time_or_by_hand)
     assert_string_not_equal(first, f->id);
     assert_int_not_equal(add(f, "over", NOON, NOON - S), REFUSAL_NONE);
     assert_notes(notes_text(f->notes, NOON + S), "stays hour");
-    assert_notes(notes_text_between(f->notes, NOON - S, NOON - S), ""); /* before the notes were written there are none */
+    assert_notes(notes_text_between(f->notes, NOON - S, NOON - S), ""); /* at a time before the notes were written, there are none */
     assert_true(notes_differ(f->notes, NOON - S, NOON + S) && notes_differ(f->notes, NOON + 3600 * S, NOON + S));
     assert_false(notes_differ(f->notes, NOON + S, NOON + 2 * S));
     assert_notes(notes_text(f->notes, NOON + 3600 * S), "stays");
@@ -89,7 +90,7 @@ CASE(another_user_ends_a_note_only_with_the_right_to)
     assert_string_equal(notes_author(f->notes, f->id), "kim");
     assert_null(notes_author(f->notes, "n1"));
     assert_int_equal(notes_end(f->notes, f->id, "lee", true, NOON + 3 * S), REFUSAL_NONE);
-    assert_string_equal(notes_author(f->notes, f->id), "kim"); /* the author of a note is still known after the note has ended */
+    assert_string_equal(notes_author(f->notes, f->id), "kim"); /* the author of an ended note is still known */
     assert_notes(notes_text(f->notes, NOON + 4 * S), "");
     char *text = notes_text_between(f->notes, NOON, NOON + S);
     assert_non_null(strstr(text, "\"ended_by\":\"lee\""));
@@ -105,7 +106,7 @@ CASE(there_is_a_limit)
         for (int i = 0; i < NOTES; i++)
             assert_int_equal(add(f, "n", NOON + round * 100 * S, NOON + (round * 100 + 60) * S), REFUSAL_NONE);
     assert_int_equal(add(f, "last", NOON + 1000 * S, 0), REFUSAL_NONE);
-    open_again(f); /* the file holds the maximum number of notes when it is opened again */
+    open_again(f); /* reopening must accept a file with the maximum number of notes */
     char *text = notes_text_between(f->notes, 0, INT64_MAX);
     json_t *message = test_json(json_loads(text, 0, NULL));
     assert_int_equal(json_array_size(json_object_get(message, "list")), NOTES_ENDED + 1);
@@ -186,7 +187,7 @@ CASE(a_note_is_shown_once_it_is_on_disk)
     struct notes *notes = notes_open(f->log, f->history, writer);
     const struct note one = { .text = "one", .tag = "t" }, two = { .text = "two", .tag = "t" }, three = { .text = "three", .tag = "t" };
     assert_int_equal(notes_add(notes, &one, "kim", NOON, f->id), REFUSAL_NONE);
-    /* writing the second note also keeps the first one, which is not written yet */
+    /* the second note is added before the first one is written; both must be in the file afterwards */
     assert_int_equal(notes_add(notes, &two, "kim", NOON, f->id), REFUSAL_NONE);
     assert_notes(notes_text(notes, NOON), "");
     assert_int_equal(notes_number(notes), 0);
@@ -200,16 +201,17 @@ CASE(a_note_is_shown_once_it_is_on_disk)
     file_writer_end(writer, &ticket);
     collect(writer);
     assert_int_equal(file_writer_settled(writer, &ticket), -ENOTDIR);
-    assert_notes(notes_text(notes, NOON + 2 * S), "one two"); /* the end of the note could not be written, so the note still exists */
+    assert_notes(notes_text(notes, NOON + 2 * S), "one two"); /* the change could not be written, so the note "one" is still active */
     assert_int_equal(system(mended), 0);
     assert_int_equal(notes_end(notes, f->id, "kim", false, NOON + S), REFUSAL_NONE);
     assert_int_equal(notes_add(notes, &three, "kim", NOON + S, f->id), REFUSAL_NONE);
-    notes_close(&notes); /* closes the notes, as a reload of the plant does: the pending change must still be written */
+    /* closes the notes before the change is written, as a reload of the plant does: the writer must still write it */
+    notes_close(&notes);
     file_writer_stop(writer);
     open_again(f);
     assert_notes(notes_text(f->notes, NOON + 2 * S), "one three");
     notes = notes_open(f->log, f->history, writer);
-    notes_close(&notes); /* the daemon ends: the writer has stopped, and is destroyed after its users */
+    notes_close(&notes); /* the order at the end of the daemon: the writer has stopped, its users are closed, and then it is destroyed */
     file_writer_destroy(&writer);
 }
 

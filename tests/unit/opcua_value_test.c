@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* OPC UA: node addresses, and conversion of values to readings: every numeric type, status codes and timestamps bit by bit, and
-   values that are no numbers. */
+/* OPC UA: node addresses, and the conversion of values to readings. Tests every numeric type, status codes and timestamps bit
+   by bit, and values that are no numbers. */
 #include "tests/support/test.h"
 
 #include "plant/sources/opcua_address.h"
@@ -106,7 +106,7 @@ TEST(what_is_no_number_is_bad)
     assert_int_equal(value.quality, QUALITY_BAD_SENSOR_FAILURE);
 }
 
-/* Status codes and times reach the snapshot for drawing unchanged. */
+/* Status codes and times of OPC UA values must be the same in a snapshot of the store, bit by bit. */
 TEST(status_codes_and_times_stay_as_they_are)
 {
     static const uint32_t codes[] = { 0, 0x00960000, 0x00000480, 0x40930000, 0x40A50480, 0x40000001, 0x808C0000, 0x80AB0000, 0xC0000000 };
@@ -136,7 +136,8 @@ TEST(status_codes_and_times_stay_as_they_are)
     stamped_writer_finish(&writer);
 }
 
-/* Readings older than the machine's boot: a machine that started a minute ago receives readings that are an hour old. */
+/* A machine that started a minute ago gets readings that are an hour old, so they are older than the origin of the monotonic
+   clock. Their age must nevertheless be an hour. */
 TEST(what_is_older_than_the_machine_s_start_is_as_old_as_it_is)
 {
     static const int64_t minute_ns = 60 * 1000000000LL;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The operator's view: positions of readings between their limits, the field of these positions, tags without limits, and alarms. */
+/* The operator view, which shows where each reading lies between the tag's alarm limits (its position: 0 in the middle, 1 at H, 2 at
+   HH, negative towards L and LL). Tests positions, the field of positions, tags without limits, and alarms. */
 #include "tests/support/test.h"
 
 #include "field/field.h"
@@ -40,10 +41,10 @@ TEST(test_limits_that_are_missing)
     expect(&high, 40, 0.5);
     expect(&high, 80, 1);
     expect(&high, 90, 2);
-    expect(&high, -50, 0); /* for a tag without a low limit, no reading is too low */
+    expect(&high, -50, 0); /* this tag has no low limit, so no reading is too low: position 0 */
     expect(&alone, 80, 1);
     expect(&alone, 120, 1.5);
-    expect(&alone, 500, 2); /* a reading far beyond H stays below 2, the position of HH, even though this tag has no HH */
+    expect(&alone, 500, 2); /* this tag has H but no HH: far beyond H the position approaches 2 (that of HH) without reaching it */
     assert_true(limit_place(&range_0_100, &alone, 500) < 2);
     expect(&last, 40, 0.5);
     assert_true(limit_place(&range_0_100, &last, 79.999) < 1); /* no limit is passed yet */
@@ -57,7 +58,7 @@ TEST(test_limits_that_are_missing)
     expect(&both, 40, 0);
     expect(&both, 20, -1);
     expect(&both, -10, -2.5 + 0.501); /* cut */
-    expect(&beyond, -60, 0);          /* this tag's limit is below MIN: position 0 is half the range below the limit */
+    expect(&beyond, -60, 0);          /* this tag's limit H is below MIN: position 0 is then half the range below H */
     expect(&beyond, -10, 1);
     struct plant_tag none = with_limits(NAN, NAN, NAN, NAN);
     assert_true(isnan(limit_place(&range_0_100, &none, 5)));
@@ -80,7 +81,7 @@ TEST(test_places_rise_with_readings)
             double place = limit_place(&range_0_100, &tag, value);
             assert_true(place >= before - 1e-12 && fabs(place) <= 3);
             struct reading reading = { .value = value };
-            /* the exceeded alarm limits must agree with the reading's position and so with its colour */
+            /* the alarm that results from the limits must agree with the position, which determines the colour */
             enum alarm_kind alarm = alarm_beyond(&tag, &reading);
             assert_int_equal(alarm == ALARM_HH, place >= 2 - 1e-9 && isfinite(limits[LIMIT_HH]));
             assert_int_equal(alarm == ALARM_LL, place <= -2 + 1e-9 && isfinite(limits[LIMIT_LL]));
@@ -99,7 +100,7 @@ TEST(test_alarms_need_usable_readings)
     assert_int_equal(alarm_beyond(&tag, &reading), ALARM_H);
     reading.value = 1;
     assert_int_equal(alarm_beyond(&tag, &reading), ALARM_L);
-    /* a reading that is Uncertain because it exceeds the instrument's range still exceeds its limits */
+    /* a reading beyond the instrument's range is Uncertain, but still counts as beyond its limits */
     reading.quality = QUALITY_UNCERTAIN_UNITS_EXCEEDED;
     assert_int_equal(alarm_beyond(&tag, &reading), ALARM_L);
     reading.quality = QUALITY_BAD_SENSOR_FAILURE;
@@ -118,8 +119,8 @@ static void set_limits(struct synthetic *plant, size_t tag, double low, double h
            sizeof(plant->plant.tags[tag].alarms.limits));
 }
 
-/* Compares the field of positions between limits with the field of a plant without limits whose readings are those positions:
-   they must be equal. */
+/* Sets random positions from least_place to most_place. The field of positions of a plant with limits must equal the field of a
+   plant without limits whose readings are these positions. */
 static void compare(enum interpolation interpolation, double least_place, double most_place)
 {
     struct synthetic *places = synthetic_create(.vertices = VERTICES, .sensors = SENSORS, .max = 1);
@@ -129,7 +130,8 @@ static void compare(enum interpolation interpolation, double least_place, double
     uint64_t random = 11;
     for (size_t i = 0; i < SENSORS; i++) {
         double place = least_place + (most_place - least_place) * synthetic_random_unit(&random);
-        set_limits(plant, i, 10 * (double)i, 10 * (double)i + 4); /* limits differ per tag; the middle is 2 above L */
+        /* each tag has other limits, L and H = L + 4; the middle between them is L + 2 */
+        set_limits(plant, i, 10 * (double)i, 10 * (double)i + 4);
         double from_middle = fabs(place) <= 1 ? 2 * place : copysign(2 + 4 * (fabs(place) - 1), place);
         plant->snapshot->readings[i].value = 10 * (double)i + 2 + from_middle;
         places->snapshot->readings[i].value = place;
@@ -155,7 +157,9 @@ static void compare(enum interpolation interpolation, double least_place, double
 TEST(test_places_are_interpolated_with_the_same_weights)
 {
     compare(INTERPOLATION_SHEPARD, -2.5, 2.5);
-    compare(INTERPOLATION_PAPER, 0, 1); /* only positions from L to H: the other plant would clamp positions beyond them to its range */
+    /* only positions from 0 to 1 (from the middle to H), because the plant of the reference has this range and would clamp
+       others */
+    compare(INTERPOLATION_PAPER, 0, 1);
 }
 
 TEST(test_tags_without_limits_have_no_place)
@@ -168,7 +172,7 @@ TEST(test_tags_without_limits_have_no_place)
     for (int i = 0; i < LIMIT_COUNT; i++)
         plant->plant.tags[1].alarms.limits[i] = NAN;
     plant->snapshot->readings[0].value = 60;
-    plant->snapshot->readings[1].value = 1e6; /* this tag has no limits, so its huge reading must not affect the field of positions */
+    plant->snapshot->readings[1].value = 1e6; /* a huge reading of the tag without limits must not affect the field of positions */
     plant->snapshot->readings[2].value = 60;
     struct field_params params;
     field_params_default(&plant->plant, 0, &params);
@@ -184,7 +188,7 @@ TEST(test_tags_without_limits_have_no_place)
     plant->snapshot->readings[1].quality = QUALITY_BAD_SENSOR_FAILURE; /* now nothing is known there */
     scalars = field_scalars(field, 0, &params, plant->snapshot);
     assert_true(scalars->at[1].no_data && !scalars->at[1].no_limits);
-    params.show = SHOW_VALUE; /* limits have no effect on a field of values */
+    params.show = SHOW_VALUE; /* when the field shows values, limits must have no effect */
     plant->snapshot->readings[1].quality = QUALITY_GOOD;
     scalars = field_scalars(field, 0, &params, plant->snapshot);
     assert_true(!scalars->at[1].no_limits && fabsf(scalars->at[1].value - 1e6f) < 1);

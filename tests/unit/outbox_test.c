@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Alarm notifications: which recipients get which alarms; floods, shifts, areas, escalation, outages and restarts; and the text
-   of messages. */
+/* The outbox of alarm notifications: which recipients get which alarms, in alarm floods, by shift and area, with escalation,
+   and after outages and restarts; also the text of the messages. */
 #include "tests/support/test.h"
 #include <time.h>
 
@@ -85,7 +85,7 @@ static void put(struct outbox_fixture *f, int tag, int mode, bool active, bool u
     outbox_put(f->outbox, &alarm, false, now_us);
 }
 
-/* Delivers the message that is due. Returns its number of alarms; 0: no message is due. */
+/* Delivers the message that is due for a recipient, and returns the number of alarms in it; 0: no message is due. */
 static size_t deliver(struct outbox_fixture *f, int recipient, int64_t now_us)
 {
     struct outbox_message message;
@@ -113,7 +113,7 @@ CASE(a_flood_is_one_message)
     for (int i = 0; i < 500; i++)
         put(f, i, LOCAL, true, true, T0, T0 + i * S / 500);
     assert_int_equal(deliver(f, OPS, T0 + 2 * S), 0);
-    assert_int_equal(deliver(f, OPS, T0 + 4 * S), 500); /* each alarm is delivered once, even if two rules match it */
+    assert_int_equal(deliver(f, OPS, T0 + 4 * S), 500); /* 500 alarms in one message: each alarm once, even if two rules match it */
     for (int s = 5; s < 200; s++)
         assert_int_equal(deliver(f, OPS, T0 + s * S), 0);
     assert_int_equal(outbox_counts(f->outbox, OPS).waiting, 0);
@@ -140,7 +140,8 @@ CASE(rules_choose_by_priority_area_and_shift)
     const struct plant *plant = f->c->plant;
     const int64_t noon = T0; /* 12:06 in Berlin */
     assert_int_equal(rules_for(plant, "T0000", 0, 1, noon), 3);
-    assert_int_equal(rules_for(plant, "T0001", 1, 1, noon), 1); /* this tag belongs to E-2, in another area */
+    /* this tag's asset E-2 is in another area, so only one of the rules applies */
+    assert_int_equal(rules_for(plant, "T0001", 1, 1, noon), 1);
     assert_int_equal(rules_for(plant, "T0002", 2, 2, noon), 2);
     assert_int_equal(rules_for(plant, "T0002", 2, 2, noon + 2 * 3600 * S), 0);
     assert_int_equal(rules_for(plant, "T0002", 2, 2, noon + 3 * 86400 * S), 0); /* Saturday */
@@ -162,9 +163,11 @@ CASE(shifts_keep_to_the_wall_clock)
     assert_true(on(&friday_night, "2026-11-20T21:00"));
     assert_true(on(&friday_night, "2026-11-21T04:59"));
     assert_false(on(&friday_night, "2026-11-21T05:00"));
-    assert_false(on(&friday_night, "2026-11-20T04:00")); /* 04:00 on Friday belongs to the night shift that began on Thursday */
+    /* false: at 04:00 on Friday, the night shift that began on Thursday is on, not Friday's */
+    assert_false(on(&friday_night, "2026-11-20T04:00"));
     const struct notify_shift sunday_night = { .days = 1 << 5, .from_min = 22 * 60, .to_min = 6 * 60 };
-    assert_true(on(&sunday_night, "2026-10-25T04:59")); /* clocks were set back at 01:00 UTC that night, so the shift is an hour longer */
+    /* true: the clocks were set back at 01:00 UTC in this night, so the shift until 06:00 local time is an hour longer */
+    assert_true(on(&sunday_night, "2026-10-25T04:59"));
     assert_false(on(&sunday_night, "2026-10-25T05:00"));
     const struct notify_shift all_day = { .days = 1 << 6 };
     assert_true(on(&all_day, "2026-11-22T10:00"));
@@ -178,7 +181,8 @@ CASE(it_escalates_until_acknowledged)
     put(f, 1, LOCAL, true, true, T0, T0);
     assert_int_equal(deliver(f, OPS, T0 + 3 * S), 2);
     put(f, 1, LOCAL, true, false, T0, T0 + 5 * MIN);  /* acknowledged */
-    put(f, 0, LOCAL, false, true, T0, T0 + 6 * MIN);  /* the alarm returned to normal but is not acknowledged */
+    /* alarm 0 has returned to normal but is not acknowledged, so it must still be escalated */
+    put(f, 0, LOCAL, false, true, T0, T0 + 6 * MIN);
     assert_int_equal(deliver(f, BOSS, T0 + 10 * MIN - S), 0);
     restart(f);
     assert_int_equal(deliver(f, BOSS, T0 + 10 * MIN), 0);
@@ -187,7 +191,8 @@ CASE(it_escalates_until_acknowledged)
     assert_int_equal(deliver(f, OPS, T0 + 20 * MIN + 3 * S), 1);
     put(f, 0, LOCAL, false, false, T0, T0 + 21 * MIN);
     assert_int_equal(deliver(f, OPS, T0 + 60 * MIN), 0);
-    assert_int_equal(deliver(f, BOSS, T0 + 60 * MIN), 1); /* the alarm of the second escalation is delivered: it had waited */
+    /* the second escalation, due at 20 minutes, had waited until it is taken here */
+    assert_int_equal(deliver(f, BOSS, T0 + 60 * MIN), 1);
     assert_int_equal(deliver(f, BOSS, T0 + 90 * MIN), 0);
     put(f, 0, LOCAL, true, true, T0 + 91 * MIN, T0 + 91 * MIN); /* the alarm is raised again */
     assert_int_equal(deliver(f, OPS, T0 + 91 * MIN + 3 * S), 1);
@@ -199,18 +204,21 @@ CASE(nobody_is_told_twice_after_a_restart)
     put(f, 0, LOCAL, true, true, T0, T0);
     assert_int_equal(deliver(f, OPS, T0 + 3 * S), 1);
     struct outbox_message message;
-    assert_true(outbox_next(f->outbox, BOSS, T0 + 3 * S, &message)); /* the daemon is killed while this message is being sent */
+    /* takes a message and does not report its result, as if the daemon were killed while sending it */
+    assert_true(outbox_next(f->outbox, BOSS, T0 + 3 * S, &message));
     char id[OUTBOX_ID_BYTES];
     memcpy(id, message.id, sizeof(id));
     restart(f);
     struct alarm old = alarm_of(f, 0, LOCAL, true, true, T0), settled = alarm_of(f, 1, LOCAL, true, false, T0 - S);
     struct alarm missed = alarm_of(f, 2, LOCAL, true, true, T0 + 4 * S);
     outbox_put(f->outbox, &old, true, T0 + 10 * S);
-    outbox_put(f->outbox, &settled, true, T0 + 10 * S); /* settled: an alarm that was acknowledged before any notification was due */
-    outbox_put(f->outbox, &missed, true, T0 + 10 * S);  /* raised just before the daemon ended: only the journal has it */
+    /* `settled` was acknowledged before its notification was due, so none must be sent */
+    outbox_put(f->outbox, &settled, true, T0 + 10 * S);
+    /* `missed` was raised just before the daemon ended: it is in the journal, but not in the outbox's file */
+    outbox_put(f->outbox, &missed, true, T0 + 10 * S);
     assert_true(outbox_next(f->outbox, BOSS, T0 + 10 * S, &message));
     assert_int_equal(message.count, 1);
-    /* after a restart the message is sent again with the same id, by which Alertmanager recognises it */
+    /* the message that was being sent is sent again with the same id, so that receivers can recognise the repetition */
     assert_string_equal(message.id, id);
     outbox_sent(f->outbox, BOSS, T0 + 10 * S);
     assert_int_equal(deliver(f, OPS, T0 + 70 * S), 1);
@@ -258,7 +266,8 @@ CASE(what_waits_is_bounded_and_said)
     assert_int_equal(message.left_out, 999);
     outbox_sent(f->outbox, OPS, T0 + 60 * S);
     assert_int_equal(deliver(f, OPS, T0 + 200 * S), OUTBOX_ITEMS - 1);
-    put(f, 5998, LOCAL, true, true, T0 + 300 * S, T0 + 300 * S); /* delivery fails for more than a day, so the message is dropped */
+    /* the delivery of this alarm fails for longer than OUTBOX_KEEP_US, so it must be dropped and counted as lost */
+    put(f, 5998, LOCAL, true, true, T0 + 300 * S, T0 + 300 * S);
     assert_true(outbox_next(f->outbox, OPS, T0 + 303 * S, &message));
     outbox_failed(f->outbox, OPS, T0 + 303 * S);
     outbox_tick(f->outbox, T0 + 303 * S + OUTBOX_KEEP_US + S);
@@ -294,7 +303,8 @@ TEST_WITH(what_is_set_aside_is_not_told, set_up, tear_down)
     struct alarm alarm = alarm_of(f, 0, LOCAL, true, true, T0);
     outbox_put(f->outbox, &alarm, false, T0);
     alarm.state.unacknowledged = false;
-    alarm.state.aside = ALARM_ASIDE_CARRIED; /* its device is lost, which is reported once for the device */
+    /* the tag's device is lost, which is notified once for the device, so the alarm of this tag must not be sent */
+    alarm.state.aside = ALARM_ASIDE_CARRIED;
     outbox_put(f->outbox, &alarm, false, T0 + S);
     assert_int_equal(deliver(f, OPS, T0 + 4 * S), 0);
     assert_int_equal(outbox_counts(f->outbox, OPS).waiting, 0);
@@ -318,7 +328,7 @@ CASE(alertmanager_hears_what_stands_and_what_has_ended)
     assert_string_equal(json_string_value(json_object_get(json_object_get(one, "labels"), "tag")), "T0000");
     assert_string_equal(json_string_value(json_object_get(json_object_get(one, "labels"), "area")), "Tank farm");
     assert_string_equal(json_string_value(json_object_get(one, "startsAt")), "2026-11-18T11:06:40.000Z");
-    /* Alertmanager ends the alert then, unless it gets an update */
+    /* time at which Alertmanager ends the alert unless it gets an update */
     assert_string_equal(json_string_value(json_object_get(one, "endsAt")), "2026-11-18T11:12:03.000Z");
     assert_string_equal(json_string_value(json_object_get(two, "endsAt")), "2026-11-18T11:07:00.000Z");
     mem_free(text);
@@ -336,12 +346,13 @@ CASE(what_ended_while_nobody_looked_is_over)
     assert_int_equal(deliver(f, AM, T0 + 3 * S), 2);
     restart(f);
     struct alarm stands = alarm_of(f, 1, LOCAL, true, true, T0);
-    /* after a restart alarm 0 is not reported again, because its limit no longer exists */
+    /* after the restart alarm 0 is not reported to the outbox, as happens if its limit was removed from the plant */
     outbox_put(f->outbox, &stands, true, T0 + 60 * S);
     outbox_end_unseen(f->outbox, T0 + 60 * S);
     assert_int_equal(deliver(f, BOSS, T0 + 10 * MIN), 0);
     assert_int_equal(deliver(f, BOSS, T0 + 10 * MIN + 3 * S), 1);
-    assert_int_equal(deliver(f, AM, T0 + 10 * MIN + 3 * S), 2); /* Alertmanager is also told that alarm 0 has ended */
+    /* two alarms: the one that is still active, and alarm 0, which Alertmanager must learn has ended */
+    assert_int_equal(deliver(f, AM, T0 + 10 * MIN + 3 * S), 2);
     assert_int_equal(deliver(f, AM, T0 + 30 * MIN), 1);
 }
 
@@ -366,7 +377,7 @@ CASE(a_clock_that_jumps_ahead_loses_nothing_later)
     assert_true(outbox_next(f->outbox, AM, T0 + 3 * S, &message));
     outbox_failed(f->outbox, AM, T0 + 4 * S);
     assert_true(outbox_next(f->outbox, AM, T0 + 2 * MIN, &message));
-    outbox_tick(f->outbox, later); /* the clock jumps while the message is being sent again */
+    outbox_tick(f->outbox, later); /* while the message is being sent again, the clock jumps to `later` */
     put(f, 1, LOCAL, true, true, later, later);
     assert_int_equal(deliver(f, OPS, later + 3 * S), 1);
     assert_int_equal(outbox_counts(f->outbox, OPS).lost, 0);
@@ -415,7 +426,8 @@ CASE(a_mail_says_what_and_since_when)
     text_finish(&mail);
 }
 
-/* Acknowledgement in Plantcast is off, so Plantcast cannot know whether an operator acknowledged the alarm in the control system. */
+/* The text of an escalation. If alarms are acknowledged in the control system instead of in Plantcast, Plantcast does not know
+   whether that has happened, so the mail must say "Still present" instead of "Not acknowledged". */
 CASE(an_escalated_mail_says_only_what_is_known)
 {
     load(f, "  - { id: all, to: boss, escalate: [{ after_min: 10, to: ops }] }\n");
@@ -440,7 +452,8 @@ CASE(an_escalated_mail_says_only_what_is_known)
     }
 }
 
-/* While a message waits, the tag's unit changes: the message's value and limit are converted, or left out. */
+/* The tag's unit changes while a message waits: value and limit in the message must be converted to the new unit, or left out
+   if that is impossible. */
 CASE(a_message_that_waits_has_the_present_unit)
 {
     static const struct {
@@ -482,7 +495,8 @@ CASE(a_damaged_file_is_refused)
     deliver(f, OPS, T0 + 4 * S);
 }
 
-/* The notifier may sleep until the next alarm change only if no timer is pending. */
+/* outbox_rests() tells the notifier that it may sleep until the next change of an alarm; that is allowed only if nothing is due
+   later. */
 CASE(it_rests_when_time_changes_nothing)
 {
     load(f, "  - { id: all, to: [ops, am] }\n");
@@ -493,7 +507,7 @@ CASE(it_rests_when_time_changes_nothing)
     deliver(f, OPS, T0 + 4 * S);
     assert_false(outbox_rests(f->outbox)); /* the alarm may still escalate */
     put(f, 0, LOCAL, false, false, T0, T0 + 5 * S);
-    assert_false(outbox_rests(f->outbox)); /* a message to Alertmanager is still due */
+    assert_false(outbox_rests(f->outbox)); /* not at rest: an update to Alertmanager is due later */
     deliver(f, AM, T0 + 9 * S);
     outbox_tick(f->outbox, T0 + 24 * 60 * MIN);
     assert_true(outbox_rests(f->outbox));

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The frame overlay: it lists alarms without a visible marker but not those with one, and it never covers the fitted plant. */
+/* The overlay of frames with markers, lists and legend. It must list those alarms whose markers are not visible, and only
+   those, and it must not cover the plant when the camera is fitted. */
 #include "render/overlay/overlay.h"
 
 #include "tests/support/test.h"
@@ -16,7 +17,8 @@ static struct {
     struct snapshot *snapshot;
 } stand;
 
-/* Makes a white frame with one tag's marker in its middle. */
+/* Returns a white frame with the marker of one tag in the middle, and with the overlay drawn on it. occluded: geometry hides
+   the marker. */
 static struct frame *draw_view(int tag, bool occluded, const struct view *view)
 {
     struct frame *frame = frame_create(NULL, WIDTH, HEIGHT);
@@ -29,7 +31,8 @@ static struct frame *draw_view(int tag, bool occluded, const struct view *view)
     return frame;
 }
 
-/* Makes the same frame; right: the right half's view in a split view, or NULL. */
+/* Like draw_view(), with the default view. right: parameters of the right half for a split view; NULL: the view is not split.
+   */
 static struct frame *draw_beside(int tag, bool occluded, const struct view *right)
 {
     struct view view;
@@ -46,7 +49,7 @@ static struct frame *draw(int tag, bool occluded, bool split)
     return draw_beside(tag, occluded, split ? &same : NULL);
 }
 
-/* Returns whether a frame shows the list of alarms without a visible marker in its lower left corner. */
+/* Returns whether the lower left corner of a frame contains the list of alarms without a visible marker. */
 static bool has_list(const struct frame *frame)
 {
     for (int y = HEIGHT * 2 / 3; y < HEIGHT; y++)
@@ -75,7 +78,7 @@ TEST(alarms_out_of_sight_are_listed)
         reading->alarm_status = ALARM_ACTIVE;
         assert_false(lists(2, false, split));
         assert_true(lists(2, true, split));
-        assert_true(lists(1, false, split)); /* the marker of tag 1 is outside the frame, so its alarm is listed in the corner */
+        assert_true(lists(1, false, split)); /* the marker of tag 1 is outside the frame, so its alarm must be listed in the corner */
     }
     reading->alarm = ALARM_NONE;
 }
@@ -86,7 +89,8 @@ TEST(any_number_of_alarms_fits)
         stand.snapshot->readings[i].alarm = ALARM_BAD;
     struct frame *frame = draw(0, true, false), *small = frame_create(NULL, 16, 16);
     assert_true(has_list(frame));
-    for (int y = 0; y < HEIGHT / 2; y++) /* the list of alarms leaves the upper half of the frame free, below the clock */
+    /* the list must not extend into the upper half of the frame; the clock occupies the first 80 rows */
+    for (int y = 0; y < HEIGHT / 2; y++)
         assert_true(y < 80 || frame->bgrx[y * frame->stride_bytes + 40] == 255);
     view_default(&stand.toy->scene, 16, 16, &small->view);
     overlay_draw(small, &stand.toy->scene, stand.snapshot, NULL);
@@ -96,7 +100,7 @@ TEST(any_number_of_alarms_fits)
         stand.snapshot->readings[i].alarm = ALARM_NONE;
 }
 
-/* Returns the lightest or darkest blue of the header's card in a frame of the light or dark theme. */
+/* Returns the largest or the smallest blue value in the card of the header, in the dark or the light theme. */
 static int extreme(bool dark, bool lightest)
 {
     struct view view;
@@ -119,7 +123,7 @@ TEST(cards_are_as_light_or_dark_as_the_backdrop)
     assert_true(extreme(true, true) > 180 && extreme(true, false) < 90);
 }
 
-/* A frame for anonymous viewers must not depend on any reading. */
+/* Draws a frame for anonymous viewers with one marker. The result must be the same for every reading and alarm. */
 static struct frame *draw_bare(double value, enum alarm_kind alarm)
 {
     struct frame *frame = frame_create(NULL, WIDTH, HEIGHT);
@@ -159,7 +163,8 @@ TEST(the_window_is_what_is_left_free)
     overlay_window(&stand.toy->scene, &view, &whole);
     assert_true(whole.left == -1 && whole.bottom == -1 && whole.right > 0.6 && whole.right < 0.85 && whole.top > 0.8 && whole.top < 0.9);
     struct frame *frame = draw(0, false, false);
-    for (int y = (int)((1 - whole.top) / 2 * HEIGHT) + 1; y < HEIGHT; y++) /* checks that only the marker and its label are drawn there */
+    /* from x = 600 on, the window for the plant must be white: the overlay draws only the marker and its label, farther left */
+    for (int y = (int)((1 - whole.top) / 2 * HEIGHT) + 1; y < HEIGHT; y++)
         for (int x = 600; x < (int)((1 + whole.right) / 2 * WIDTH); x++)
             assert_int_equal(frame->bgrx[y * frame->stride_bytes + 4 * x], 255);
     frame_unref(&frame);
@@ -172,7 +177,8 @@ TEST(the_window_is_what_is_left_free)
     assert_true(none.right == 1);
 }
 
-/* Returns how many pixels of the middle row the legend covers at the right edge of a half of the split view. */
+/* Returns how many pixels of the frame's middle row the legend covers, counted from the right edge of a half of the split view.
+   */
 static int legend_px(const struct frame *frame, int half)
 {
     int count = 0;
@@ -195,7 +201,8 @@ TEST(halves_share_a_legend_that_says_the_same)
         right.look = way == LOOK ? LOOK_MATERIALS : right.look;
         right.field.show = way == SHOWN ? SHOW_DIFFERENCE : right.field.show;
         struct frame *frame = draw_beside(0, false, &right);
-        /* Both halves are equal or differ only in interpolation: a colour means the same value in both, so they share one legend. */
+        /* If the halves are equal or differ only in the kind of distance, a colour means the same value in both, so they share
+           one legend. */
         bool shared = way == SAME || way == DISTANCE;
         if ((legend_px(frame, 0) > 20) == shared || (legend_px(frame, 1) > 20) != (way != LOOK))
             fail_msg("way %d: %d pixels of the left half, %d of the right", way, legend_px(frame, 0), legend_px(frame, 1));
@@ -203,7 +210,8 @@ TEST(halves_share_a_legend_that_says_the_same)
     }
 }
 
-/* Returns how many pixels differ in the legend's quarter of the frame between this look and the default one. */
+/* Returns how many pixels of the quarter that contains the legend differ between a frame with this look and one with the
+   default look. */
 static int legend_differs_px(enum look look)
 {
     struct view view;
@@ -220,14 +228,14 @@ static int legend_differs_px(enum look look)
     return count;
 }
 
-/* Values read from a picture with the glossy look may be wrong: the legend says so in two lines. */
+/* With the glossy look, values that a user reads from colours may be wrong. The legend must say so in two lines. */
 TEST(the_legend_says_glossy)
 {
     assert_int_equal(legend_differs_px(LOOK_FLAT), 0);
     assert_true(legend_differs_px(LOOK_GLOSSY) > 500);
 }
 
-/* Returns how many pixels of the legend differ between two frames, each with one arrow far from the legend. */
+/* Draws two frames, each with one arrow label outside the legend. Returns how many pixels of the legend differ. */
 static int arrow_legends_differ_px(const struct frame_label *label, const struct frame_label *other)
 {
     const struct frame_label *labels[2] = { label, other };
@@ -259,7 +267,7 @@ TEST(the_legend_lists_unknown_directions_where_there_are_any)
     north.dx = 0;
     north.dy = 1;
     nowhere.dx = 0;
-    still.value = 0; /* drawn as a dot: the direction is known, but the speed is 0 */
+    still.value = 0; /* a speed of 0 with a known direction, which is drawn as a dot instead of an arrow */
     stand.toy->plant.groups[0].directed = true;
     assert_int_equal(arrow_legends_differ_px(&east, &north), 0);
     assert_int_equal(arrow_legends_differ_px(&east, &still), 0);
@@ -273,7 +281,8 @@ TEST(what_rounds_to_nought_has_no_sign)
     assert_true(pen_rounded(-0.06, 1) == -0.06 && pen_rounded(-0.4, 0) == 0 && pen_rounded(-0.0, 6) == 0);
 }
 
-/* Returns by how many pixels a half's upper left corner differs between two frames. */
+/* Returns the number of pixels that differ between two frames at the upper left corner of one half, where its caption is drawn.
+   */
 static int caption_px(const struct frame *frame, const struct frame *plain, int half)
 {
     int count = 0, left = half ? WIDTH / 2 + 4 : 4;
@@ -298,11 +307,11 @@ static void differ(struct view *right, int way)
     }
 }
 
-/* If the halves are computed differently, captions state how, because the legend does not. */
+/* If the halves of a split view are computed differently, each must have a caption that says how, because legends do not. */
 TEST(halves_say_what_they_differ_in)
 {
     struct frame *plain = draw(0, false, true);
-    for (int x = 0; x < 240; x++) /* both halves of this frame are computed alike, so neither has a caption */
+    for (int x = 0; x < 240; x++) /* no caption: both halves of this frame are computed alike */
         assert_int_equal(plain->bgrx[20 * plain->stride_bytes + 4 * (WIDTH / 2 + 4 + x)], 255);
     for (int way = 0; way < 9; way++) {
         struct view right;
@@ -317,7 +326,7 @@ TEST(halves_say_what_they_differ_in)
     frame_unref(&plain);
 }
 
-/* Returns a checksum of a part of a frame. */
+/* Returns a checksum of the pixels within a rectangle of a frame. */
 static unsigned sum_of(const struct frame *frame, const struct label_box *box)
 {
     unsigned sum = 0;
@@ -327,7 +336,8 @@ static unsigned sum_of(const struct frame *frame, const struct label_box *box)
     return sum;
 }
 
-/* Header, captions of both halves, alarm list and legend, each checked separately; also the text of a frame that shows the past. */
+/* Every text of the overlay must change with the language. Each part is compared separately: the header, the captions of both
+   halves, the alarm list, the legend, and the note that a frame shows the past. */
 TEST(all_speaks_the_language)
 {
     static const struct label_box parts[] = {
@@ -361,10 +371,10 @@ TEST(all_speaks_the_language)
             fail_msg("part %d is in one language", part);
 }
 
-/* A wider legend also leaves a smaller area for the plant. */
+/* A language in which the legend's title is longer makes the legend wider, so the window for the plant must be smaller. */
 TEST(a_longer_legend_takes_more_room)
 {
-    struct view view; /* the legend's title is a sentence */
+    struct view view; /* shows distances, because the legend then has a sentence as its title */
     struct camera_window english, korean;
     view_default(&stand.toy->scene, WIDTH, HEIGHT, &view);
     view.field.show = SHOW_DISTANCE;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Pairing of displays by six digits: pairings survive a restart and can be revoked, and pending requests and guesses are limited. */
+/* Pairing of displays by six digits, which the display shows and an operator confirms. Pairings survive a restart and can be
+   revoked; the numbers of pending requests and of wrong guesses are limited. */
 #include "access/pairings.h"
 
 #include "tests/support/test.h"
@@ -38,7 +39,8 @@ static void print_secret(int i, char secret[TOKEN_MAX_CHARS + 1])
     assert_true(pairings_secret_valid(secret));
 }
 
-/* Requests a pairing for the i-th device; eight devices share each address. */
+/* Requests a pairing for display i. Displays 0 to 7 have one address, 8 to 15 another, and so on (PAIRINGS_FROM displays per
+   address). */
 static enum pairing ask(struct pairings_fixture *f, int i, int64_t now_ns, char digits[PAIRING_DIGITS + 1])
 {
     char secret[TOKEN_MAX_CHARS + 1];
@@ -113,7 +115,7 @@ CASE(digits_expire)
 {
     char digits[PAIRING_DIGITS + 1], others[PAIRING_DIGITS + 1];
     ask(f, 1, 0, digits);
-    /* approval fails, because the display has stopped polling */
+    /* refused: the display has not asked for PAIRING_QUIET_S, so its request has expired */
     assert_int_not_equal(approve(f, digits, PAIRING_QUIET_S * NS_PER_S), REFUSAL_NONE);
     int64_t now_ns = 1000 * NS_PER_S, begun_ns = now_ns;
     ask(f, 1, now_ns, digits);
@@ -121,7 +123,7 @@ CASE(digits_expire)
         assert_int_equal(ask(f, 1, now_ns, others), PAIRING_WAITS);
     assert_string_equal(digits, others);
     ask(f, 1, now_ns, others);
-    assert_string_not_equal(digits, others); /* equal by chance once in a million runs */
+    assert_string_not_equal(digits, others); /* new digits differ from the old ones, except by a chance of one in a million */
     assert_int_not_equal(approve(f, digits, now_ns), REFUSAL_NONE);
     assert_int_equal(approve(f, others, now_ns), REFUSAL_NONE);
 }
@@ -131,11 +133,12 @@ CASE(few_wait_and_few_guesses_are_judged)
     char digits[PAIRING_DIGITS + 1], more[PAIRING_DIGITS + 1];
     for (int i = 0; i < PAIRINGS; i++)
         assert_int_equal(ask(f, i, 0, digits), PAIRING_WAITS);
-    /* Eight addresses that fill the table cannot shut out a ninth: it gets its share of seven. */
+    /* The requests of eight addresses fill the table. A ninth address must nevertheless get its share of seven places, which
+       are taken from the other addresses. */
     for (int i = 0; i < PAIRINGS_FROM - 1; i++)
         assert_int_equal(ask(f, PAIRINGS + i, 0, more), PAIRING_WAITS);
     assert_int_equal(ask(f, PAIRINGS + PAIRINGS_FROM - 1, 0, more), PAIRING_FULL);
-    /* the first address lost one pending request to the ninth and now has as many as the others, so it gets no more */
+    /* the first address has lost one of its places to the ninth; it now has as many as the others, so it gets none back */
     assert_int_equal(ask(f, 0, 0, more), PAIRING_FULL);
     assert_int_equal(ask(f, PAIRINGS, PAIRING_QUIET_S * NS_PER_S, more), PAIRING_WAITS); /* all other requests have expired */
     for (int i = 0; i < PAIRINGS_FROM - 1; i++)
@@ -147,10 +150,10 @@ CASE(few_wait_and_few_guesses_are_judged)
     const uint8_t address[16] = { PAIRINGS / PAIRINGS_FROM };
     assert_int_equal(pairings_ask(f->pairings, &(struct pairing_request){ secret, ROOM, address, "" }, PAIRING_QUIET_S * NS_PER_S, digits,
                                   &left_s),
-                     PAIRING_FULL); /* refused: this address already has eight pending requests */
+                     PAIRING_FULL); /* refused: eight requests of this address are pending */
     for (int i = 0, now_s = PAIRING_QUIET_S; i < PAIRING_WRONG; i++)
         assert_int_not_equal(approve(f, "abcdef", now_s * NS_PER_S), REFUSAL_NONE);
-    /* correct digits, but after too many wrong ones no digits are accepted for a minute */
+    /* refused although the digits are right: after too many wrong ones, none are accepted for a minute */
     assert_int_not_equal(approve(f, more, (PAIRING_QUIET_S + 1) * NS_PER_S), REFUSAL_NONE);
     assert_int_equal(ask(f, PAIRINGS, (PAIRING_QUIET_S + 30) * NS_PER_S, more), PAIRING_WAITS);
     assert_int_equal(approve(f, more, (PAIRING_QUIET_S + 61) * NS_PER_S), REFUSAL_NONE);
@@ -172,7 +175,8 @@ static void mirror(const struct pairings_fixture *f, struct pairings *renderer, 
     json_decref(told);
 }
 
-/* The renderer has no folder of its own, and its clock differs from the core's. */
+/* A display asks a renderer, which has no pairings of its own and passes the request to its core. The core's clock differs from
+   that of the renderer. */
 CASE(a_renderer_asks_its_core)
 {
     struct pairings *renderer = pairings_open(f->log, NULL, NULL);
@@ -191,7 +195,7 @@ CASE(a_renderer_asks_its_core)
     ask(f, 3, NS_PER_S, digits);
     assert_string_equal(there, digits);
     assert_int_equal(look(renderer, 3, (PAIRING_S + 2) * NS_PER_S, there), PAIRING_WAITS);
-    assert_string_equal(there, ""); /* the pairing is not valid any more */
+    assert_string_equal(there, ""); /* the digits are no longer valid: PAIRING_S is over */
     mirror(f, renderer, (PAIRING_S + 2) * NS_PER_S);
     assert_int_equal(look(renderer, 3, (PAIRING_S + 2) * NS_PER_S, there), PAIRING_WAITS);
     assert_int_equal(approve(f, digits, NS_PER_S), REFUSAL_NONE);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Trial layouts of sensors: a trial is available at once and replaced when its distances along the surface are ready. An
-   invalid layout is refused as a whole. */
+/* Trial positions of sensors: a new trial is available at once, and is replaced by one with distances along the surface when these are
+   computed. If one position of a trial is invalid, the whole trial is refused. */
 #include "placing/placing.h"
 
 #include "tests/support/test.h"
@@ -20,7 +20,7 @@ struct placing_fixture {
     char *folder;
     pthread_mutex_t lock;
     pthread_cond_t came;
-    int count; /* number of answers that the module announced; needs the lock */
+    int count; /* number of notifications that an answer is available; protected by `lock` */
 };
 
 static void notify(void *arg)
@@ -65,7 +65,8 @@ TEST_FIXTURE(struct placing_fixture, begin, end)
 
 #define CASE(name) TEST_ON(struct placing_fixture *f, name, set_up, tear_down)
 
-/* Returns the next answer about the gaps between a plant's sensors; NULL if no request for the test's positions is pending. */
+/* Waits for the next answer. gaps: an answer about areas far from any sensor; otherwise returns NULL once no distances of the
+   trial's positions are being computed. */
 static struct sensor_coverage_answer *collect(struct placing_fixture *f, bool gaps)
 {
     for (int seen = 0;;) {
@@ -117,9 +118,10 @@ TEST_WITH(test_a_move_is_a_trial_at_once_and_a_better_one_later, set_up, tear_do
         const float *at_m = view->positions_m[v];
         double straight_m = hypot(hypot(at_m[0] - 0.5, at_m[1] - 0.5), at_m[2] - 1.0), along_m = (double)trial_distances(sensor)[v];
         farthest_m = fmax(farthest_m, along_m);
-        assert_true(along_m > 0.94 * straight_m - 0.05); /* no path along the surface is much shorter than the straight line */
+        /* the distance along the surface can be only slightly shorter than the straight line, by numerical error */
+        assert_true(along_m > 0.94 * straight_m - 0.05);
     }
-    /* the farthest vertex is in the middle of the box's bottom, 0.5 + 1 + 0.5 m along the surface */
+    /* farthest point: the middle of the box's bottom, 0.5 + 1 + 0.5 m along the surface from the sensor */
     assert_true(farthest_m > 1.85 && farthest_m < 2.4);
     trials_give(placing_trials(f->placing), &trial);
 }
@@ -172,7 +174,8 @@ CASE(test_gaps_are_of_what_the_set_has_moved)
     }
 }
 
-/* A client that leaves while a request is running is not waited for and gets no answer. */
+/* A client's set of trial positions is destroyed while its request is being computed. The destruction must not wait for the
+   result, and no answer may be delivered. */
 CASE(test_a_set_that_goes_takes_its_questions_along)
 {
     for (int i = 0; i < 20; i++) {

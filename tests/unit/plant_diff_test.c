@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Comparison of two plants: which items were added, removed and changed, and which changes make a different configuration. */
+/* Comparison of two plants: which items were added, removed or changed, and which of these changes give the plant another
+   configuration id. */
 #include "tests/support/test.h"
 
 #include "base/text/text.h"

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Import of a plant: accepted file names, complete and interrupted uploads, and commands in sequence. */
+/* Import of a plant through the daemon: which file names are accepted, complete and interrupted uploads, and the commands that
+   are run one after another. */
 #include "importing/plant_import.h"
 
 #include "tests/support/test.h"
@@ -26,7 +27,7 @@ static void begin(struct plant_import_fixture *f)
     assert_int_equal(atomic_file_put(left, "x", 1), 0);
     f->import = plant_import_create(f->plant);
     assert_non_null(f->import);
-    assert_int_not_equal(access(left, F_OK), 0); /* an upload that never finished leaves no file */
+    assert_int_not_equal(access(left, F_OK), 0); /* the file of an upload that was interrupted must be removed */
 }
 
 static void end(struct plant_import_fixture *f)
@@ -81,7 +82,7 @@ TEST_WITH(test_uploads, set_up, tear_down)
     struct export_list list = { 0 };
     assert_int_equal(put(f, "b.csv", "1", true), 0);
     assert_int_equal(put(f, "a.rvm", "12", true), 0);
-    assert_int_equal(put(f, "a.rvm", "123", true), 0); /* a second upload of this name replaces the first */
+    assert_int_equal(put(f, "a.rvm", "123", true), 0); /* a second upload with the same name replaces the first file */
     assert_int_equal(put(f, "gone.glb", "1", false), 0);
     int error;
     struct export_upload *upload = export_upload_begin(f->exports, "under way.glb", &error);
@@ -139,7 +140,7 @@ TEST_WITH(test_orders, set_up, tear_down)
     assert_false(plant_import_next(f->import, &taken));
     plant_import_cancel(f->import);
     assert_true(plant_import_order(f->import, &order));
-    assert_false(plant_import_cancelled(f->import)); /* a new run is not affected by the earlier cancellation */
+    assert_false(plant_import_cancelled(f->import)); /* a cancellation applies only to the run during which it was requested */
     assert_false(plant_import_order(f->import, &order));
     assert_true(plant_import_busy(f->import));
     assert_true(plant_import_next(f->import, &taken));

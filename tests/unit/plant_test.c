@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Plant files: what a valid file means, and every kind of mistake, with its line, column and message. */
+/* Plant files: what each part of a valid file means, and every kind of mistake with its line, column and message. */
 #include "plant/plant.h"
 
 #include "tests/support/test.h"
@@ -102,7 +102,7 @@ CASE(everything_is_read)
          "Source,Group,Asset,Node,X,Y,Z,Strength,Decay,Byte Order,Stale s,LL,L,H,HH\n"
          "A,40001,Float,500,Square Root,0,27648,-50,150,mm,1,say \"hi\",s,g,101,,1,2,3,7,8,BADC,9,-2,,,2\n"
          "B,3!300007.4,,,,,,,,,,,,g,101,TI-B,,,,,,,,,,,\n");
-    plant_case_assert_loaded(f, 1); /* the group has no unit, but its tag has mm: a warning is expected */
+    plant_case_assert_loaded(f, 1); /* one warning is expected: the group has no unit, while the unit of its tag is mm */
     const struct plant *p = f->plant;
     assert_string_equal(p->name, "Werk Süd");
     assert_true(p->up == AXIS_Y && p->display.view.set && p->display.view.eye_m[1] == 2.5 && p->display.view.target_m[2] == 10 &&
@@ -202,9 +202,10 @@ CASE(sensors_are_given_in_the_asset_frame)
          placed_csv);
     plant_case_assert_loaded(f, 0);
     assert_int_equal(plant_sensors(f->plant, 0, &s), 2);
-    /* Rotation about x: (x, y, z) -> (x, -z, y), then about z: (x, y, z) -> (-y, x, z), together (a, b, c) -> (c, a, b). The
-       expected positions apply the inverse to points relative to (0, 2, 3). */
-    assert_point(s[0].position_m, 2, 3, 0); /* positions are enlarged by the asset's scale, still in metres */
+    /* The asset's rotation is about x, (x, y, z) -> (x, -z, y), and then about z, (x, y, z) -> (-y, x, z); together (a, b, c)
+       -> (c, a, b). The expected positions result from the inverse, applied to the sensors' positions relative to (0, 2, 3). */
+    /* the asset is drawn twice as large as its model, but positions remain in metres of the plant */
+    assert_point(s[0].position_m, 2, 3, 0);
     assert_true(s[0].tag == 0 && s[0].node_hash == 0 && !s[0].node);
     assert_float_equal(f->plant->assets[0].unit_m, 2e-3, 1e-15);
     assert_true(s[1].tag == 2 && s[1].node_hash != 0);
@@ -248,7 +249,8 @@ CASE(an_asset_stands_upright_in_a_plant_that_is_y_up)
          placed_csv);
     plant_case_assert_loaded(f, 0);
     assert_int_equal(plant_sensors(f->plant, 0, &s), 2);
-    assert_point(s[0].position_m, 1, -3, -8); /* 8 below the foot; 3 to the south, which is z in the model and -y here */
+    /* position relative to the asset: 8 m below its foot, and 3 m to the south, which is z in the model and -y here */
+    assert_point(s[0].position_m, 1, -3, -8);
     mem_free(s);
 }
 
@@ -274,7 +276,7 @@ CASE(the_locale_changes_nothing)
 
 /* --- plant.yaml, bad -------------------------------------------------------------------------------------------------------- */
 
-/* Loads small_yaml with one line replaced by `text`, together with the tag list; line 0: no replacement. */
+/* Loads small_yaml with its line number `line` replaced by `text` (0: no replacement), together with the tag list `csv`. */
 static void load_csv_with(struct plant_case *f, int line, const char *text, const char *csv)
 {
     struct text yaml = { 0 };
@@ -309,7 +311,8 @@ CASE(unknown_keys_are_named)
     FOUND(f, { "plant.yaml", 1, 19, "expected the name of a key, found a list" });
 }
 
-/* Radiance HDR files: two valid ones of white pixels, and a black one, which cannot serve as surroundings. */
+/* Surroundings for lighting, given as Radiance HDR files: two files of white pixels are accepted, and a black one is refused.
+   */
 CASE(surroundings_are_read)
 {
     static const char hdr[] = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n\x80\x80\x80\x81\x80\x80\x80\x81";

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Texts in PNG files: written and found again, but not found in truncated or damaged files. */
+/* Texts in PNG files are written and found again; in truncated or damaged files they are not found. */
 #include "tests/support/test.h"
 #include <png.h>
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Colour ramps that previews use: equal rows are shared, and the number of rows is limited. */
+/* The table of colour ramps that the software renderer uses for previews: materials with equal ramps share a row, and the
+   number of rows is limited. */
 #include "tests/support/test.h"
 
 #include "render/soft/ramp_rows.h"
@@ -31,7 +32,8 @@ static void end(struct ramp_rows_setup *s)
         mem_free(*at);
 }
 
-/* Sets a material's colour ramp from black to the material's own colour. grey: the material's colour where it is drawn as muted context. */
+/* Gives a material a colour ramp from black to `color`. grey: end colour of its second ramp, used where the material is muted
+   because it is only context. */
 static void set(struct ramp_rows_setup *s, size_t material, uint32_t color, uint32_t grey)
 {
     for (uint32_t i = 0; i < STEPS; i++) {
@@ -49,7 +51,7 @@ TEST(equal_ones_are_kept_once)
     begin(&s, 5000);
     for (size_t i = 0; i < s.count; i++) {
         uint32_t shade = (uint32_t)(i * 7919 % 50);
-        /* equal colours, but some of these materials have a different grey as muted context, which needs a row of its own */
+        /* all have the same colours, but some have another grey when muted, so they need a row of their own */
         set(&s, i, 0x102030 + shade, 0x808080 + (shade == 7 && i > 2500));
     }
     assert_int_equal(pack(&s), 51);

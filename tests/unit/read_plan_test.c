@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Modbus read plans: which registers are read together, on random tag lists, checked against the rules one by one. */
+/* Plans for reading Modbus registers: which registers are read with one request. Plans of random tag lists are checked against
+   each rule. */
 #include "tests/support/test.h"
 
 #include "tests/support/plant_by_hand.h"
@@ -36,7 +37,7 @@ TEST(neighbours_go_together_and_gaps_part)
     assert_int_equal(plan.block_count, 2);
     assert_block(&plan, 0, 10, 6, 3);
     assert_block(&plan, 1, 18, 6, 3);
-    assert_int_equal(plan.tags[0], 1); /* plan.tags is sorted by register and holds tag indices */
+    assert_int_equal(plan.tags[0], 1); /* plan.tags contains indices of tags, sorted by register */
     assert_int_equal(plan.tags[5], 4);
     read_plan_finish(&plan);
 }
@@ -95,10 +96,12 @@ TEST(gaps_are_bridged_up_to_the_device_s_limit)
     struct plant *plant = plant_of_registers((int[]){ 0, 6, 13, 23 }, 4, TABLE_HOLDING, DATA_FLOAT32);
     plant->sources[0].max_gap = 5;
     read_plan_init(&plan, plant, 0);
-    assert_block(&plan, 0, 0, 15, 3); /* registers 0, 6 and 13 are read together, across gaps of 4 and 5 unused registers */
-    assert_block(&plan, 1, 23, 2, 1); /* register 23 is read separately, because the gap of 8 registers before it exceeds the limit */
+    /* registers 0, 6 and 13 are in one block (one request), across gaps of 4 and 5 registers that no tag uses */
+    assert_block(&plan, 0, 0, 15, 3);
+    assert_block(&plan, 1, 23, 2, 1); /* register 23 is in a block of its own: the gap of 8 registers before it exceeds the limit */
     read_plan_split(&plan, plant, 0);
-    assert_block(&plan, 0, 0, 2, 1); /* a refused block is split at its first gap, which is then no longer read */
+    /* after the device has refused a block, it is split at its first gap, so that the unused registers are no longer read */
+    assert_block(&plan, 0, 0, 2, 1);
     assert_block(&plan, 1, 6, 9, 2);
     read_plan_finish(&plan);
     plant->sources[0].max_registers = 8;
@@ -148,8 +151,8 @@ TEST(splitting_ends_at_single_tags)
 
 enum { REGISTERS = 1000 };
 
-/* Asserts that every tag is in exactly one block, that blocks respect the limits, and that no gap of unused registers exceeds
-   the device's limit. */
+/* Asserts that every tag is in exactly one block, that blocks keep the size limits, and that no block contains a gap of unused
+   registers above the limit. */
 static void check_rules(const struct plant *plant, const struct read_plan *plan)
 {
     char wanted[2][REGISTERS + 4] = { { 0 } };
@@ -237,7 +240,8 @@ TEST(a_plan_is_put_in_words)
     plant->sources[0].device = "/dev/ttyS0";
     plant->sources[0].baud = 1200;
     read_plan_text(&text, plant, 0);
-    /* Bytes per second: (3 x 13 + 14 bytes of values) x 2 = 106, at 10 bits each; silence takes the time of 7 bytes per request. */
+    /* Expected load of the serial line: (3 requests x 13 + 14 bytes of values) x 2 per second = 106 bytes of 10 bits each. The
+       pauses that Modbus demands take as long as 7 bytes per request. */
     assert_non_null(strstr(text.at, "source a: /dev/ttyS0, 1200 baud, parity N, 1 stop bit: 4 tags"));
     assert_non_null(strstr(text.at, "106 bytes per second; the pauses take 6 % of the time; 123 % of the line's capacity: TOO MUCH"));
     text_finish(&text);

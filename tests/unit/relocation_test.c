@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Relocation of sensors on a loaded asset: distances equal those that plantcast-prep would store, each request gets exactly one
-   answer, and invalid ones are refused. */
+/* Moving a sensor on a loaded asset computes the distances from its new position. They must equal those that plantcast-prep
+   would store. Each request must get exactly one answer, and invalid requests are refused. */
 #include "surface/relocation.h"
 
 #include "tests/support/test.h"
@@ -18,10 +18,10 @@
 #include "tests/support/sleep.h"
 
 #define FAR 3e-3  /* of the largest distance */
-/* metres; a point nearer than this counts as on the surface: bridging of cracks moves the surface by less */
+/* metres; points nearer than this to the surface count as on it: when cracks are bridged, the surface moves by less */
 #define ON 1e-3
-#define SEEN 1e-5 /* metres; a vertex of the finest level this near to the visible surface counts as visible */
-#define NEAR 0.05 /* metres; as SEEN, for vertices that only coarser levels have, which lie off the surface */
+#define SEEN 1e-5 /* metres; a vertex of the finest level that is this near to the visible surface counts as visible */
+#define NEAR 0.05 /* metres; the same limit for vertices that only coarser levels have, because these lie off the surface */
 
 struct result_box { /* receives a result */
     pthread_mutex_t lock;
@@ -113,15 +113,16 @@ static struct asset *prepared(struct prep_case *c)
     return asset;
 }
 
-struct most {           /* largest allowed differences between computed and stored distances, as shares of the largest distance */
-    double mean, worst; /* mean and largest allowed difference among the compared vertices */
-    double far_share;   /* allowed share of the finest level's visible vertices that differ by more than 0.3 % */
+struct most {           /* limits for the differences between computed and stored distances, as shares of the largest distance */
+    double mean, worst; /* limits for the mean and for the largest difference of the compared vertices */
+    double far_share;   /* limit for the share of the finest level's visible vertices whose distances differ by more than FAR */
 };
 
 enum sight { UNSEEN, SEEN_FINEST, SEEN_COARSE };
 
-/* Classifies vertices: in the finest level; only in coarser levels (which have errors); or hidden inside another part. Hidden
-   vertices are not compared: plantcast-prep assigns them a nearby distance, which is ambiguous. */
+/* Returns for each vertex whether it belongs to the finest level, only to coarser levels (which have errors), or is hidden
+   inside another part. Hidden vertices are not compared, because plantcast-prep gives them the distance of any nearby point of
+   the surface. */
 static enum sight *sights_of(const struct relocation_shape *shape)
 {
     struct cache_file kept;
@@ -223,7 +224,7 @@ static void try_sensors(const struct asset *asset, const struct relocation_shape
 
 TEST(a_moved_sensor_has_the_distances_that_would_be_stored)
 {
-    /* largest allowed differences from stored distances; they are largest where two parts intersect */
+    /* limits if the stored surface is used, for the first asset and for the second, whose parts intersect */
     static const struct most as_stored[] = { { 2e-4, 0.02, 2e-3 }, { 1e-3, 0.07, 0.0065 } };
     static const struct most as_made_anew[] = { { 5e-4, 0.05, 0.015 }, { 2e-3, 0.08, 0.014 } };
     struct asset *asset = prepared(*state);
@@ -232,7 +233,7 @@ TEST(a_moved_sensor_has_the_distances_that_would_be_stored)
     shape.surface_path = path;
     enum sight *sights = sights_of(&shape);
     try_sensors(asset, &shape, sights, as_stored);
-    shape.surface_key++; /* the key of another asset's file, so the file must not be used */
+    shape.surface_key++; /* the key no longer fits the stored surface, so it must not be used but be computed again */
     try_sensors(asset, &shape, sights, as_made_anew);
     mem_free(sights);
     asset_unref(&asset);
@@ -260,7 +261,7 @@ TEST(a_point_that_is_far_away_is_refused)
     struct relocation *relocation = relocation_create(the_log, workers, &shape);
     assert_true(relocation_place(relocation, (const double[3]){ 0.3, 0.6, 1.2 }, &place, NULL));
     assert_float_equal(place.distance_m, 1.2, 1e-6);
-    /* the limit is the plate's diagonal of 1.41 m */
+    /* refused: the point is farther from the plate than the limit, which is the plate's diagonal of 1.41 m */
     assert_false(relocation_place(relocation, (const double[3]){ 0.3, 0.6, 1.5 }, &place, NULL));
     assert_int_equal(relocation_request(relocation, (const double[3]){ 0.3, 0.6, 1.5 }, put_into_box, &box), 0);
     assert_int_equal(relocation_request(relocation, (const double[3]){ 0.3, NAN, 0 }, put_into_box, &box), 0);
@@ -282,7 +283,7 @@ TEST(an_asset_without_surface_is_said_to_be_broken)
         box_init(&box);
         struct relocation *relocation = relocation_create(the_log, workers, &shapes[i]);
         uint64_t ticket = relocation_request(relocation, (const double[3]){ 0.5, 0.1, 0 }, put_into_box, &box);
-        assert_true((ticket > 0) == (i == 0)); /* sensors may be placed on the first shape too, a degenerate triangle */
+        assert_true((ticket > 0) == (i == 0)); /* only the first of these shapes, a degenerate triangle, accepts positions of sensors */
         assert_true(relocation_place(relocation, (const double[3]){ 0.5, 0.1, 0 }, &place, NULL) == (i == 0));
         if (ticket) {
             wait_for(&box, 1);
@@ -296,7 +297,7 @@ TEST(an_asset_without_surface_is_said_to_be_broken)
 
 /* --- failing allocations ------------------------------------------------------------------------------------------------------- */
 
-/* countdown: the memory allocation that finds it at 1 fails, which tests shortage of memory; 0: none fails */
+/* Number of memory allocations until one fails (1: the next one), to test a shortage of memory; 0: none fails. */
 static atomic_int until_fault;
 void *__real_mem_try_array(size_t count, size_t bytes_each);
 void *__wrap_mem_try_array(size_t count, size_t bytes_each);
@@ -321,8 +322,8 @@ static void ask_and_wait(struct relocation *relocation, struct result_box *box)
     wait_for(box, 1);
 }
 
-/* Computes the distances of a moved sensor repeatedly. Each time a different memory allocation fails, and the request after it
-   must succeed. */
+/* Requests distances repeatedly; in the n-th round the n-th memory allocation fails. Each request must get an answer, and the
+   request after it must succeed. */
 static void try_walks_without_memory(struct relocation *relocation, const struct cad *plate)
 {
     int failed = 0;
@@ -375,7 +376,8 @@ TEST(without_memory_it_says_so_and_goes_on)
             assert_int_equal(box.result.status, relocation_state(relocation) == RELOCATION_WARM ? RELOCATION_DONE : RELOCATION_NO_SURFACE);
             assert_true(reached || relocation_state(relocation) == RELOCATION_WARM);
             broken += reached && relocation_state(relocation) == RELOCATION_BROKEN;
-            warm += reached && relocation_state(relocation) == RELOCATION_WARM; /* the cached surface was too large, so it is built again */
+            /* warm although an allocation failed: the stored surface could not be loaded, so it was computed again */
+            warm += reached && relocation_state(relocation) == RELOCATION_WARM;
             mem_free(box.result.geodesic_m);
             if (!reached)
                 try_walks_without_memory(relocation, &plate);
@@ -409,7 +411,8 @@ TEST(what_waits_is_cancelled)
     struct relocation_shape shape = shape_of(&plate);
     struct workers *one = test_workers(1);
     pthread_mutex_lock(&gate);
-    workers_submit(one, hold, &gate); /* the worker is blocked, so nothing can be warmed up until the gate opens */
+    /* blocks the only worker until the gate opens, so that the preparation of the surface cannot begin */
+    workers_submit(one, hold, &gate);
     struct relocation *relocation = relocation_create(the_log, one, &shape);
     uint64_t first = relocation_request(relocation, (const double[3]){ 0.5, 0.5, 0 }, put_into_box, &cancelled);
     relocation_request(relocation, (const double[3]){ 0.25, 0.5, 0 }, put_into_box, &kept);
@@ -429,7 +432,7 @@ TEST(what_waits_is_cancelled)
     workers_submit(one, hold, &gate);
     relocation_request(relocation, (const double[3]){ 0.5, 0.5, 0 }, put_into_box, &dropped);
     pthread_mutex_unlock(&gate);
-    relocation_destroy(&relocation); /* destroying answers every pending request before it returns */
+    relocation_destroy(&relocation); /* relocation_destroy() must answer every pending request before it returns */
     assert_int_equal(dropped.count, 1);
     assert_int_equal(cancelled.count, 1);
     mem_free(kept.result.geodesic_m);

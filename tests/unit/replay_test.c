@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Replays: every recorded sample reaches the store in order and at its time, once or in a loop. */
+/* Replay sources: every recorded sample reaches the store in order and at its time, once or in a loop. */
 #include "tests/support/test.h"
 
 #include "base/clock.h"
@@ -55,7 +55,7 @@ static void on_sample_event(void *arg, const struct sample_event *event)
     if (all->count == MOST)
         return;
     all->at[all->count] = *event;
-    all->count++; /* the count is increased last, so that readers see complete entries only */
+    all->count++; /* increased after the entry is complete, because another thread reads entries up to this number */
 }
 
 static void play(struct replay_setup *s, const char *keys, const char *csv, const char *tags)
@@ -86,7 +86,7 @@ static void wait_for_link(struct replay_setup *s, bool up)
     assert_true(store_link_is_up(s->store, 0) == up);
 }
 
-/* Collects the events of one tag in order of arrival. Returns their number. */
+/* Copies the events of one tag to `out` in the order of their arrival, and returns their number. */
 static size_t of_tag(const struct replay_setup *s, int tag, struct sample_event *out, size_t most)
 {
     size_t count = 0;
@@ -103,14 +103,14 @@ CASE(every_sample_comes_at_its_time)
     play(s, "speed: 100", "time_s,shell,TT 2\n0,1,5\n10,2.5,\n20,-3,\n50,0,6\n60,4,7\n", "Tag Name,Address\nTT-1,shell\nTT 2,\n");
     wait_for_heard(s, 8);
     size_t count = of_tag(s, 0, got, 20);
-    assert_int_equal(count, 6); /* five samples, and an event for the lost link */
+    assert_int_equal(count, 6); /* five samples, and one event because the link was lost at the end of the recording */
     for (size_t i = 0; i < 5; i++) {
         assert_true(got[i].value == values[i] && got[i].quality == QUALITY_GOOD);
         assert_true(llabs(got[i].mono_ns - got[0].mono_ns - (int64_t)(at_s[i] * 1e7)) < 1000);
         assert_true(llabs(got[i].utc_ns - got[0].utc_ns - (int64_t)(at_s[i] * 1e7)) < NS_PER_MS);
     }
     assert_int_equal(of_tag(s, 1, got, 20), 4); /* blank cells are no samples */
-    wait_for_link(s, false);                    /* after the replay has ended no value appears live */
+    wait_for_link(s, false);                    /* after the end of the replay the link must be down, so that no value appears live */
 }
 
 CASE(values_beyond_the_range_are_uncertain)
@@ -157,7 +157,7 @@ CASE(what_is_not_in_the_file_is_bad)
     assert_true(s->events.at[1].tag == 0 && s->events.at[1].value == 0);
     wait_for_link(s, true);
     int64_t begin_ns = clock_mono_ns();
-    source_stop(&s->source); /* stops the replay long before the recording ends, which must take at most 2 s */
+    source_stop(&s->source); /* stops the source long before the end of the recording; that must take at most 2 s */
     assert_true(clock_mono_ns() - begin_ns < 2 * NS_PER_S);
 }
 
@@ -182,7 +182,8 @@ static void check_series(const char *path, const char *name, size_t count, doubl
     series_finish(&series);
 }
 
-/* A cell must not be split at a decimal comma or a thousands comma: the columns would get wrong values. */
+/* In files separated by commas, a comma within a number (decimal or thousands) would shift all following columns. Such files
+   must be refused. */
 CASE(commas_in_numbers_are_refused)
 {
     static const char *const files[] = { "t_s;a;b\n0;21,5;3\n", "t_s\ta\tb\n0\t21,5\t3\n", "t_s,a,b\n0,1,234,3\n",
@@ -213,7 +214,8 @@ CASE(exported_qualities_are_replayed)
     assert_true(s->events.at[1].value == 2 && s->events.at[3].value == 4);
 }
 
-/* Timestamps as historians write them: with a time zone, with an offset, or in local time, with one hour of a night repeated. */
+/* Timestamps in the forms that historians write: with Z, with an offset, or in local time, where one hour of an autumn night
+   occurs twice. */
 CASE(times_may_be_instants)
 {
     static const char *const wide[] = {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Replays the seeds of the HTTP request fuzzer and random mutations of them. */
+/* Runs the fuzzer of HTTP requests on its stored seeds and on random changes of them. */
 #include "tests/fuzz/request_fuzz.c"
 
 #include "tests/support/test.h"

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Files of a plant that are replaced together, with a kill or a full disk at each step; also edits to the plant file's text. */
+/* A revision replaces several files of a plant together. After a kill or a full disk at any step, all files must be old or all
+   new. Also tests edits to the plant file's text. */
 #include "preprocess/import/revision/revision_files.h"
 
 #include "tests/support/test.h"
@@ -19,7 +20,7 @@
 static int steps_left = -1; /* -1: none fails */
 static bool kills;
 
-/* Replaces rename() of the C library. */
+/* Replaces the C library's rename(), so that tests can let a rename fail or kill the process. */
 int rename(const char *from, const char *to)
 {
     if (steps_left == 0 && kills)
@@ -55,7 +56,8 @@ static int take(const char *folder, const char *own)
     return lock;
 }
 
-/* Applies a revision that also replaces a list in a subfolder and records one unchanged list. */
+/* Applies a revision to the plant in `folder`. In addition to the usual files, it replaces a tag list in a subfolder and
+   contains one file that does not change. */
 static int apply_to(const char *folder, const char *plant_as_read)
 {
     char *own = test_printf("%s/.import-1", folder), *list = test_printf("%s/lists/tags.csv", folder);
@@ -169,8 +171,8 @@ TEST(rights_of_a_file_stay)
     assert_int_equal(st.st_mode & 0777, 0640);
 }
 
-/* Applies or undoes a revision in a child process in which the step-th rename fails or kills the process. Returns true if all steps
-   succeeded. */
+/* Applies a revision, or undoes it, in a child process whose rename number `step` fails or kills the process. Returns true if
+   the process finished before that rename. */
 static bool run_until(const char *folder, bool undoing, int step, bool killed)
 {
     int status;
@@ -195,13 +197,14 @@ static void fail_each_step(bool killed)
             if (undoing)
                 assert_int_equal(apply(folder), 0);
             ended = run_until(folder, undoing, step, killed);
-            int lock = take(folder, NULL); /* the next program gets the lock */
+            /* takes the lock, as the next program does, which completes or undoes the interrupted revision */
+            int lock = take(folder, NULL);
             assert_true(lock >= 0);
             close(lock);
             bool new = all(folder, true);
             assert_true(new || all(folder, false));
             assert_true(!ended || new == !undoing);
-            if (new) { /* a revision that was applied can still be undone */
+            if (new) { /* if the revision was applied, it must be possible to undo it */
                 assert_int_equal(undo(folder, false), 0);
                 assert_true(all(folder, false));
             }

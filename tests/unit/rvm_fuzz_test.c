@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Replays the seeds of the fuzzer of RVM and attribute files, and random mutations of them. PLANTCAST_FUZZ_ROUNDS: mutations per seed. */
+/* Runs the fuzzer of RVM and attribute files on its stored seeds and on random changes of them. PLANTCAST_FUZZ_ROUNDS: number
+   of changes per seed. */
 #include "tests/fuzz/rvm_fuzz.c"
 
 #include "tests/support/test.h"

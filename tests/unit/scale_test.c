@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The legend's scale: from values to positions to colours, in bands and on logarithmic scales. */
+/* The legend's scale: which position and colour a value has, without and with bands, and on logarithmic scales. */
 #include "field/scale.h"
 #include "plant/colormaps.h"
 
@@ -42,7 +42,8 @@ TEST(test_outside)
     }
 }
 
-/* A reading of exactly MAX is stored as a float, which may be larger than MAX as a double. */
+/* Readings are stored as floats. A reading of exactly MAX may as a float be larger than MAX as a double, and must not count as
+   beyond the range. */
 TEST(test_limits_are_compared_as_floats)
 {
     assert_true((double)0.3f > 0.3);
@@ -57,18 +58,19 @@ TEST(test_bands_of_an_interval)
     expect_row(12, 9.99, 0, 100, 10);
     expect_row(38, 10, 0, 100, 10);
     expect_row(243, 99, 0, 100, 10);
-    expect_row(243, 100, 0, 100, 10); /* a value of exactly MAX belongs to the last band */
+    expect_row(243, 100, 0, 100, 10); /* a value of exactly MAX belongs to the last band, not to one beyond */
     expect_row(243, (double)0.3f, 0, 0.3, 0.03);
-    expect_row(249, 100, 0, 100, 19);   /* bands begin at 0, 19, ... 95; the last one ends at 100, so its centre is 97.5 */
+    /* bands of 19 begin at 0, 19, ... 95; the last one ends at MAX = 100, so its colour is that of 97.5 */
+    expect_row(249, 100, 0, 100, 19);
     expect_row(128, 3, 0, 100, 1e6);    /* one band only */
-    expect_row(51, -95, -100, 100, 80); /* bands count from MIN, not from 0: -100 to -20 */
+    expect_row(51, -95, -100, 100, 80); /* bands are counted from MIN, not from 0: the first one extends from -100 to -20 */
 }
 
 TEST(test_bands_of_breaks)
 {
-    struct scale scale = linear(0, 100, 10); /* breaks take precedence over the interval */
+    struct scale scale = linear(0, 100, 10); /* stated breaks between bands take precedence over an interval */
     memcpy(scale.breaks, (double[]){ -5, 60, 80, 95, 100 }, 5 * sizeof(double));
-    scale.break_count = 5; /* three of the breaks are inside the range: four bands */
+    scale.break_count = 5; /* three of the five breaks lie inside the range, which gives four bands */
     static const struct {
         double value;
         int index;
@@ -87,7 +89,7 @@ TEST(test_edges_of_an_interval)
     struct scale scale = linear(20, 70, 20);
     assert_int_equal(scale_edges(&scale, edges), 2);
     assert_true(edges[0] == 40 && edges[1] == 60);
-    scale.interval = 25; /* MAX is no edge of a band */
+    scale.interval = 25; /* bands of 25 from MIN = 20: the only edge is at 45, since MAX = 70 is none */
     assert_int_equal(scale_edges(&scale, edges), 1);
     scale.interval = 0;
     assert_int_equal(scale_edges(&scale, edges), 0);
@@ -108,7 +110,8 @@ TEST(test_logarithmic)
     for (double place = 0; place <= 1; place += 0.125)
         assert_true(fabs(scale_place(&scale, scale_value(&scale, place)) - place) < 1e-12);
     assert_true(fabs(scale_value(&scale, 0.5) - 10) < 1e-9);
-    /* on a logarithmic scale, the step is the smallest difference visible at the low end of the range */
+    /* the step is the smallest difference of values that changes the colour; on a logarithmic scale that is at the low end of
+       the range */
     assert_true(scale_step(&scale) < 0.1 * log(1e4) / 255);
     memcpy(scale.breaks, (double[]){ 1, 10 }, 2 * sizeof(double));
     scale.break_count = 2;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The scheduler: which request is drawn next, tested by simulating a slow render thread and counting each client's frames. */
+/* The scheduler, which decides whose request is drawn next. The tests simulate a slow render thread and count each client's
+   frames. */
 #include "service/scheduler.h"
 
 #include "tests/support/test.h"
@@ -42,8 +43,8 @@ TEST(slow_pictures_wait_for_a_pause)
     assert_int_equal(choose(&scheduler, wait_until_ns, NONE, now_ns, NONE, wait_until_ns), URGENCY_INPUT);
 }
 
-/* Frames for input and for data take 30 ms each, a refinement 50 steps of 10 ms. Every client sends its next request
-   immediately. A moving client must wait no longer than one step plus the others' frames. */
+/* Simulates 60 s in which a request of each urgency is always waiting. Frames for input and for data take 30 ms; a refinement and a
+   snapshot take 50 steps of 10 ms. Frames for input and data must be complete within 100 ms, and each urgency must get its share. */
 TEST(everyone_gets_a_share)
 {
     enum { STEPS = 50 };
@@ -79,7 +80,7 @@ TEST(everyone_gets_a_share)
     assert_true(longest_ns[URGENCY_REFINE] <= 15 * NS_PER_S && longest_ns[URGENCY_SNAPSHOT] <= 15 * NS_PER_S);
 }
 
-/* Fifty refinements are queued when a client begins to move. */
+/* While refinements have been waiting for long, a client that begins to move must be served first. */
 TEST(a_queue_of_refinements_does_not_hold_up_a_move)
 {
     struct scheduler scheduler = { .long_ns = 99 * NS_PER_S };
@@ -90,7 +91,8 @@ TEST(a_queue_of_refinements_does_not_hold_up_a_move)
     }
 }
 
-/* Three clients that always have a request, with frames of 5, 10 and 40 ms, and one that requests a frame now and then. */
+/* Simulates three clients that always have a request, with frames of 5, 10 and 40 ms, and a fourth that requests a frame now
+   and then. The three must get equal time, and the fourth must not wait long. */
 TEST(time_is_shared_by_what_pictures_cost)
 {
     static const int64_t cost_ns[] = { 5 * NS_PER_MS, 10 * NS_PER_MS, 40 * NS_PER_MS, 10 * NS_PER_MS };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Requests for more time to the service manager: sent only while the program makes progress. */
+/* Requests to the service manager for more time to start: they must be sent only while the program makes progress. */
 #include "tests/support/test.h"
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -19,7 +19,9 @@ struct service_manager_setup {
 static void begin(struct service_manager_setup *s)
 {
     struct sockaddr_un address = { .sun_family = AF_UNIX };
-    setsid(); /* a session of its own, as under a service manager; otherwise the work of other processes in the session would count too */
+    /* gives the test a session of its own, because progress is measured as the processor time of all processes in the session
+       */
+    setsid();
     s->path = temp_path(temp_folder(), "notify");
     memcpy(address.sun_path, s->path, strlen(s->path));
     s->fd = socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
@@ -37,7 +39,7 @@ TEST_FIXTURE(struct service_manager_setup, begin, end)
 
 #define CASE(name) TEST_ON(struct service_manager_setup *s, name, set_up, tear_down)
 
-/* Returns how many requests for more time have arrived since the last call. */
+/* Returns how many requests for more time the fake service manager has received since the last call. */
 static int asked(const struct service_manager_setup *s)
 {
     char line[200];
@@ -66,7 +68,7 @@ CASE(it_asks_while_it_works_and_not_while_it_hangs)
     struct service_patience *patience = service_patience_begin("working", LIMIT_S);
     work_ms(5 * EVERY_MS);
     assert_true(asked(s) >= 3);
-    /* work done before this pause may still cause one more request to the service manager, which does not count */
+    /* waits and ignores one request that may still follow from work before the pause */
     rest_ms(EVERY_MS + EVERY_MS / 2);
     asked(s);
     rest_ms(3 * EVERY_MS);
@@ -99,10 +101,10 @@ CASE(one_step_may_not_last_for_ever)
     int asks = asked(s);
     if (clock_work_ns() - before_ns > 1500 * NS_PER_MS)
         assert_true(asks >= 5);
-    else /* the machine was too busy: the thread got no processor time and made no progress, so the number of requests proves nothing */
+    else /* not judged: on a busy machine the thread got too little processor time, so few requests prove nothing */
         print_message("# not judged: asked %d times in %lld ms of a processor\n", asks,
                       (long long)((clock_work_ns() - before_ns) / NS_PER_MS));
-    rest_ms(200); /* one more request may have been waiting for room in the socket */
+    rest_ms(200); /* ignores one request that may have waited for room in the socket */
     asked(s);
     work_ms(1000);
     assert_int_equal(asked(s), 0);

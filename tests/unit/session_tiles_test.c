@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tiles of one picture: which frames they present together, and that no tile waits forever for a frame that another tile will never get. */
+/* Tiles that together show one picture on a wall: which picture all of them present at the same time. No tile may wait for a
+   frame that another tile will never get. */
 #include "session/tiles/tile_sync.h"
 
 #include "tests/support/test.h"
@@ -29,7 +30,7 @@ static void tear_down(struct wall_case *wall)
     }
 }
 
-/* Records that tile i got a frame of the wall's `picture` and has acknowledged it. */
+/* Records that tile i has received and acknowledged its frame (number seq) of the wall's picture number `picture`. */
 static void have(struct wall_case *wall, int i, uint64_t picture, uint32_t seq)
 {
     session_tile_sent(wall->members[i], picture, seq);
@@ -60,7 +61,8 @@ TEST(test_of_two_pictures_none_is_waited_for)
     set_up(&wall);
     have(&wall, 0, 6, 3);
     have(&wall, 1, 7, 3);
-    wall.members[0]->delivery.pacer.asked = 1; /* tile 0 has a request under way, so it may still get picture 7, which tile 1 already has */
+    /* a request of tile 0 is under way, so it may still get its frame of picture 7, which tile 1 already has */
+    wall.members[0]->delivery.pacer.asked = 1;
     session_tiles_present(&wall.tiles, &presented, 0, 0);
     assert_false(wall.members[0]->demand.any || wall.members[1]->demand.any);
     wall.members[0]->delivery.pacer.asked = 0;
@@ -70,7 +72,8 @@ TEST(test_of_two_pictures_none_is_waited_for)
     tear_down(&wall);
 }
 
-/* Frame 6 is drawn and still in the encoder, and the answer that picture 7 equals it arrives first. */
+/* Tile 0's frame of picture 6 is still being encoded when the answer arrives that picture 7 equals it (unchanged). The tile
+   must not count as showing picture 7 before it has the frame. */
 TEST(test_an_answer_without_a_frame_overtakes_one)
 {
     struct wall_case wall;
@@ -84,7 +87,7 @@ TEST(test_an_answer_without_a_frame_overtakes_one)
     wall.members[0]->delivery.pacer.asked = 1;
     have(&wall, 1, 7, 4);
     session_tiles_present(&wall.tiles, &presented, 0, 0);
-    assert_int_equal(presented, 5); /* tile 0 still shows the frame of picture 5, which must not count as its frame of picture 7 */
+    assert_int_equal(presented, 5); /* the frame that tile 0 shows belongs to picture 5, so picture 7 must not be presented yet */
     session_tile_came(wall.members[0], &request, 0);
     assert_int_equal(request.picture, 7);
     wall.members[0]->delivery.pacer.asked = 0;
@@ -95,7 +98,8 @@ TEST(test_an_answer_without_a_frame_overtakes_one)
     tear_down(&wall);
 }
 
-/* Answers a tile's request for a picture with the message that no frame follows, for the reason `absence`. */
+/* Answers a tile's request for a picture with the message that there is no frame. absence: the reason, such as "skipped" or
+   "unchanged". */
 static void answer_without_frame(struct session *session, uint64_t picture, uint64_t number, enum frame_absence absence)
 {
     struct encoded_frame *encoded = mem_new(sizeof(*encoded));
@@ -103,8 +107,8 @@ static void answer_without_frame(struct session *session, uint64_t picture, uint
     session_on_frame(session, encoded);
 }
 
-/* A request with older readings was drawn after a later one and is answered without a frame: the tile does not show its
-   picture. The answer "unchanged" means that the tile does show it. */
+/* A request whose readings are older than those of a later request is skipped: the tile then does not show that picture. After
+   the answer "unchanged" it does, because its present frame equals it. */
 TEST(test_a_skipped_picture_is_not_one_that_the_tile_shows)
 {
     for (int unchanged = 0; unchanged < 2; unchanged++) {
@@ -121,13 +125,13 @@ TEST(test_a_skipped_picture_is_not_one_that_the_tile_shows)
         assert_int_equal(tile->delivery.pacer.asked, 0);
         session_tiles_present(&wall.tiles, &presented, 0, 0);
         assert_int_equal(presented, unchanged ? 6 : 5);
-        assert_true(tile->demand.any == !unchanged); /* if one tile's request was skipped, a new picture is requested for all tiles */
+        assert_true(tile->demand.any == !unchanged); /* if the picture of one tile was skipped, all tiles need a new one */
         tear_down(&wall);
     }
 }
 
-/* Checks each shift of displays of this size, at a few preview sizes: the picture must extend beyond the tiles by the shift, so
-   that no tile ever shows an area outside it. */
+/* For displays of this size, tries all shifts of the burn-in protection at some preview sizes. The drawn picture must extend
+   beyond the tiles by the shift, so that no shifted tile shows an area outside the picture. */
 static void check_moves(int width_px, int height_px)
 {
     struct wall wall = { .inches = 10, .tile = { .columns = 3, .rows = 2, .bezel_mm = { 20, 0 } } };
@@ -152,12 +156,13 @@ static void check_moves(int width_px, int height_px)
 TEST(test_tiles_are_moved_within_the_picture)
 {
     check_moves(320, 180);
-    /* a picture across three such displays would exceed the server's largest one, so it starts smaller */
+    /* a picture for three such displays would exceed the largest one that the server draws, so it is drawn smaller */
     check_moves(4096, 2160);
     check_moves(8192, 8192);
 }
 
-/* Displays report their own size: a window may be a sliver, with bezels thousands of times as wide. */
+/* Displays state their sizes themselves: a browser window may be a narrow strip, next to which the bezels are thousands of
+   times as wide. The picture must not exceed its maximum size. */
 TEST(test_a_picture_is_never_larger_than_one_may_be)
 {
     for (int i = 0; i < WALL_DISPLAYS * 2 * 100; i++) {
@@ -176,7 +181,8 @@ TEST(test_a_picture_is_never_larger_than_one_may_be)
     }
 }
 
-/* A tile that was hidden for a while reserves as many pixels as when it joined: those of its display, not of the whole picture. */
+/* When a tile that was hidden is shown again, it must reserve the pixels of its own display, as when it joined, and not those
+   of the whole picture. */
 TEST(test_a_tile_seen_again_takes_its_own_pixels)
 {
     const struct wall wall = { .inches = 10, .tile = { .columns = 3, .rows = 2 } };
@@ -215,7 +221,8 @@ TEST(test_a_move_is_sent_once)
     tear_down(&wall);
 }
 
-/* Returns the size step after frames that take made_ms each, one every 50 ms. */
+/* Reports one frame every 50 ms, each of which took made_ms to draw. Returns the size step chosen afterwards (0: full size;
+   larger steps are smaller pictures). */
 static int size_after(struct quality_ladder *ladder, int64_t made_ms, int64_t from_ms, int64_t to_ms)
 {
     for (int64_t ms = from_ms; ms <= to_ms; ms += 50)
@@ -228,10 +235,12 @@ TEST(test_a_server_that_takes_long_makes_smaller_pictures)
     struct quality_ladder ladder = { 0 };
     assert_int_equal(size_after(&ladder, 120, 1000, 9000), 0); /* pictures are made fast enough */
     assert_int_equal(size_after(&ladder, 220, 10000, 10400), 0);
-    assert_int_equal(size_after(&ladder, 220, 10450, 10600), 1); /* pictures took too long for half a second */
-    /* frames of this size take 125 ms: short enough not to shrink, too long to try the next larger size */
+    /* frames took 220 ms for half a second, which is too long: the next smaller size */
+    assert_int_equal(size_after(&ladder, 220, 10450, 10600), 1);
+    /* 125 ms at this size: short enough to stay, but too long to try the larger size */
     assert_int_equal(size_after(&ladder, 125, 11000, 19000), 1);
-    assert_int_equal(size_after(&ladder, 60, 20000, 29000), 1); /* frames of the next larger size would take 107 ms, so the size stays */
+    /* 60 ms at this size would be 107 ms at the larger one, so the size stays */
+    assert_int_equal(size_after(&ladder, 60, 20000, 29000), 1);
     assert_int_equal(size_after(&ladder, 40, 30000, 32900), 1);
     assert_int_equal(size_after(&ladder, 40, 32950, 33100), 0);
     assert_int_equal(size_after(&ladder, 900, 40000, 60000), QUALITY_LADDER_SIZES - 1);

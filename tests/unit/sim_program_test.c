@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The program plantcast-sim, read by the daemon's Modbus source: every data type over a real connection. */
+/* The program plantcast-sim, a simulated device, read by the daemon's Modbus source over a real connection: every data type. */
 #include "tests/support/test.h"
 #include <arpa/inet.h>
 #include <errno.h>
@@ -24,7 +24,8 @@ static const char plant_text[] = "plant: { name: Test }\n"
                                  "sources: [ { id: plc, type: modbus, host: 127.0.0.1, port: %d, poll_ms: 50,\n"
                                  "             timeout_ms: 300, byte_order: CDAB, address_base: 1 } ]\n"
                                  "tags: sim-test.csv\n";
-/* uint16 becomes stale only after a minute, so that it stays Uncertain while the device pauses. */
+/* Tag list of the test. uint16 has a `Stale s` of one minute, so that its reading stays Uncertain while the device pauses and
+   does not become Bad. */
 static const char tags_text[] =
     "Tag Name,Address,Data Type,Byte Order,Scaling,Raw Low,Raw High,Scaled Low,Scaled High,Negate Value,Sim Value,Sim Loop,Stale s\n"
     "int16,40001,Short,,,,,,,,-1234,,\n"
@@ -93,7 +94,7 @@ static void begin(struct sim_program_setup *s)
     s->control_port = free_port();
     s->plant_path = temp_write_text(s->folder, "sim-test.yaml", test_printf(plant_text, s->port));
     temp_write_text(s->folder, "sim-test.csv", tags_text);
-    temp_write_text(s->folder, "none.glb", "glTF"); /* the simulator does not open the model */
+    temp_write_text(s->folder, "none.glb", "glTF"); /* the content does not matter, because the simulator does not open the model */
     struct diag diag = { 0 };
     s->plant = plant_load(s->plant_path, &diag);
     if (!s->plant)
@@ -184,7 +185,8 @@ static const struct reading *look(struct sim_reader *reader, int tag)
     return &reader->snapshot->readings[tag];
 }
 
-/* Waits until the tag has this quality and, unless `value` is NAN, a value within 1e-4 of it. */
+/* Waits up to 8 s until the tag has this quality and, unless `value` is NAN, this value with a relative error of at most 1e-4.
+   */
 static void expect(struct sim_reader *reader, const struct plant *plant, const char *name, uint32_t quality, double value)
 {
     int64_t end_ns = clock_mono_ns() + 8 * NS_PER_S;
@@ -222,7 +224,8 @@ CASE(every_type_over_the_wire)
         assert_string_equal(control(s, command), "ok");
         expect(&reader, s->plant, sets[i].name, QUALITY_GOOD, sets[i].value);
     }
-    expect(&reader, s->plant, "bit 4", QUALITY_GOOD, 1); /* setting other bits of the same register left this bit unchanged */
+    /* other bits of the same register were set meanwhile, which must not change bit 4 */
+    expect(&reader, s->plant, "bit 4", QUALITY_GOOD, 1);
     reader_stop(&reader);
 }
 
@@ -376,7 +379,7 @@ CASE(says_what_stops_it)
     s->out = first_out;
 }
 
-/* Plants with real models and recorded series; skipped where the data is absent. */
+/* Simulates plants with real models and recorded series. Skipped if these data files are missing. */
 CASE(real_plants_are_served)
 {
     const char *const plants[] = { "tests/plants/plant_room.yaml", "tests/plants/cookie_line.yaml" };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Files of the web client: served for every valid path in the folder and for no other path. */
+/* Serving the files of the web client: every valid path within the folder gives its file, and no other path gives anything. */
 #include "net/http/site.h"
 
 #include "tests/support/test.h"
@@ -52,8 +52,8 @@ CASE(honest_paths_are_served)
     expect(f, "/core/wire.js", "export {};", "text/javascript; charset=utf-8");
 }
 
-/* Comment lines and indentation are stripped, and lines keep their numbers. Template literals, text that only looks like a
-   comment, and vendored scripts stay unchanged. */
+/* Scripts are served without comment lines and indentation, and each remaining line keeps its number. Template literals, text
+   that only looks like a comment, and scripts of other projects (vendor) must stay unchanged. */
 CASE(scripts_come_without_comments_and_indentation)
 {
     static const char source[] = "// licence\n// what it is\nconst a = 1; // why\n    // a `tick\n\n    const b = 'x//y';\n"
@@ -103,7 +103,8 @@ CASE(nothing_else_is)
     site_destroy(&nowhere);
 }
 
-/* An upgrade replaces the files under a running daemon: it keeps serving the files that it had at start. */
+/* If an upgrade replaces the files while the daemon runs, the daemon must continue to serve the files that it read at its
+   start. */
 CASE(files_stay_as_they_were_at_the_start)
 {
     struct web_site *before = site_create(NULL, f->web);
@@ -133,7 +134,7 @@ static void expect_gzip(const struct site_file *file, const char *text)
     inflateEnd(&stream);
 }
 
-/* A file is compressed if the browser accepts that and compression makes it smaller. */
+/* A file is sent compressed if the browser accepts gzip and the compressed file is smaller. */
 CASE(text_is_compressed_if_the_browser_accepts_gzip)
 {
     static const struct {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The store: readings that are exactly zero, not a number, old, or cut off from their source. */
+/* The store of the newest readings. Special cases: readings that are exactly zero, not a number, old, or whose source is lost.
+   */
 #include "tests/support/test.h"
 
 #include "tests/support/plant_by_hand.h"
@@ -10,7 +11,7 @@
 #define S INT64_C(1000000000)
 
 struct store_setup {
-    struct plant *plant; /* a plant with tags 0 and 1 from source 0, and tag 2 from source 1; readings become stale after 5 s */
+    struct plant *plant; /* plant of the tests: tags 0 and 1 belong to source 0, tag 2 to source 1; readings become stale after 5 s */
     struct store *store;
     struct snapshot *snapshot;
 };
@@ -85,7 +86,8 @@ CASE(a_bad_sample_does_not_make_the_value_younger)
     assert_quality(r->quality, QUALITY_BAD_CONFIGURATION);
     assert_true(r->age_ns == 3 * S);
     assert_true(r->value == 7);
-    assert_quality(look(s, 0, 100 * S)->quality, QUALITY_BAD_CONFIGURATION); /* the stated reason stays although the value is old */
+    /* an old reading keeps the reason (quality) that it was given */
+    assert_quality(look(s, 0, 100 * S)->quality, QUALITY_BAD_CONFIGURATION);
 }
 
 CASE(goes_stale)
@@ -94,11 +96,11 @@ CASE(goes_stale)
     assert_quality(look(s, 0, 15 * S - 1)->quality, QUALITY_GOOD);
     uint32_t before = look(s, 0, 15 * S - 1)->changes;
     assert_quality(look(s, 0, 15 * S)->quality, QUALITY_BAD_COMMUNICATION_ERROR);
-    assert_int_equal(look(s, 0, 16 * S)->changes, before + 1); /* however often snapshots are taken, turning stale counts as one change */
+    assert_int_equal(look(s, 0, 16 * S)->changes, before + 1); /* becoming stale counts as one change, however many snapshots are taken */
     write_one(s, 0, 7, QUALITY_GOOD, 20 * S);
     const struct reading *r = look(s, 0, 20 * S);
     assert_quality(r->quality, QUALITY_GOOD);
-    assert_int_equal(r->changes, before + 2); /* the same value counts as a change, because the reading became usable again */
+    assert_int_equal(r->changes, before + 2); /* the same value again counts as a change, because the reading is usable again */
 }
 
 CASE(uncertain_stays_uncertain)
@@ -146,7 +148,7 @@ CASE(a_refused_tag_that_is_cut_off_says_so)
     write_one(s, 0, 7, QUALITY_GOOD, 10 * S);
     write_one(s, 0, 0, QUALITY_BAD_CONFIGURATION, 11 * S);
     store_link_lost(s->store, 0, 12 * S);
-    /* the value from before the refusal is never shown as current */
+    /* after the refusal and the loss of the link, the value from before must not appear as current */
     assert_quality(look(s, 0, 12 * S)->quality, QUALITY_BAD_COMMUNICATION_ERROR);
 }
 
@@ -167,7 +169,7 @@ CASE(what_is_dead_is_bad_at_once)
     store_tags_dead(s->store, (int[]){ 0, 1 }, 2, 12 * S);
     assert_quality(look(s, 0, 12 * S)->quality, QUALITY_BAD_COMMUNICATION_ERROR);
     assert_quality(look(s, 1, 12 * S)->quality, QUALITY_BAD_NO_COMMUNICATION); /* never had a value */
-    write_one(s, 0, 8, QUALITY_GOOD, 11 * S); /* the sample's time is before the loss */
+    write_one(s, 0, 8, QUALITY_GOOD, 11 * S); /* this sample is dated before the loss of the link */
     assert_quality(look(s, 0, 12 * S)->quality, QUALITY_GOOD);
     store_tags_lost(s->store, (int[]){ 0 }, 1, 13 * S);
     assert_quality(look(s, 0, 13 * S)->quality, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE);
@@ -185,17 +187,17 @@ CASE(counts_every_change)
     write_one(s, 0, 7.5, QUALITY_UNCERTAIN_UNITS_EXCEEDED, 12 * S);
     assert_int_equal(look(s, 0, 12 * S)->changes, ++wanted);
     write_one(s, 0, 8, QUALITY_GOOD, 12 * S);
-    write_one(s, 0, 9, QUALITY_GOOD, 12 * S); /* two changes without a snapshot in between count as two */
+    write_one(s, 0, 9, QUALITY_GOOD, 12 * S); /* the two changes of value must count as two, although no snapshot was taken in between */
     wanted += 2;
     assert_int_equal(look(s, 0, 12 * S)->changes, wanted);
     store_link_lost(s->store, 0, 13 * S);
     store_link_lost(s->store, 0, 13 * S);
     assert_int_equal(look(s, 0, 13 * S)->changes, ++wanted);
-    /* age alone lowers the reading's quality from Uncertain to Bad, which counts as a change */
+    /* without any sample the reading gets too old and goes from Uncertain to Bad, which counts as a change */
     assert_int_equal(look(s, 0, 17 * S)->changes, ++wanted);
     write_one(s, 0, 0, QUALITY_BAD_DEVICE_FAILURE, 18 * S);
     assert_int_equal(look(s, 0, 18 * S)->changes, ++wanted);
-    write_one(s, 0, 5, QUALITY_BAD_DEVICE_FAILURE, 19 * S); /* the value of a Bad sample is ignored */
+    write_one(s, 0, 5, QUALITY_BAD_DEVICE_FAILURE, 19 * S); /* a sample with Bad quality: its value 5 must be ignored */
     assert_int_equal(look(s, 0, 19 * S)->changes, wanted);
 }
 
@@ -221,7 +223,8 @@ static void count_events(void *arg, const struct sample_event *event)
     *(int64_t *)arg += event->mono_ns;
 }
 
-/* The readings are carried over to another plant: one tag stays, with another index and another stale time; one tag is new. */
+/* After a reload, readings are carried over to the new plant. One tag is in both plants, with another index and another stale
+   time; another tag is new. */
 CASE(readings_go_on_in_another_plant)
 {
     struct plant *plant = plant_by_hand_create(2);
@@ -236,25 +239,26 @@ CASE(readings_go_on_in_another_plant)
     store_adopt(store, s->store);
     store_snapshot(store, 30 * S, 1030 * S, snapshot);
     assert_true(snapshot->readings[1].value == 42);
-    /* readings are taken over without their alarms: the new plant has not reported any yet */
+    /* alarms are not carried over: the alarm service of the new plant has not evaluated any yet */
     assert_int_equal(snapshot->readings[1].alarm, ALARM_NONE);
-    assert_quality(snapshot->readings[1].quality, QUALITY_GOOD); /* the new plant's stale time is longer */
+    assert_quality(snapshot->readings[1].quality, QUALITY_GOOD); /* Good again, because the stale time in the new plant is longer */
     assert_true(snapshot->readings[1].age_ns == 20 * S);
     assert_quality(snapshot->readings[0].quality, QUALITY_BAD_WAITING);
     assert_true(store_link_is_up(store, 0));
 }
 
-/* Another source takes over a tag whose server was lost. It resends the old value with the original timestamp, slightly off by
-   our clock. */
+/* A tag whose source was lost gets samples from another source. It sends the last value again with the original timestamp,
+   which the daemon's clock shifts slightly. The reading must become usable again. */
 CASE(a_value_told_again_is_good_again)
 {
     write_one(s, 0, 42, QUALITY_GOOD, 10 * S);
     store_write(s->store, &(struct sample){ .tag = 0, .value = 7, .quality = QUALITY_GOOD }, 1, 10 * S - 1, 1010 * S);
-    assert_true(look(s, 0, 10 * S)->value == 42); /* while the first source is alive, its later value stays */
+    assert_true(look(s, 0, 10 * S)->value == 42); /* while the first source is alive, the older sample of the second source is ignored */
     store_tags_dead(s->store, &(int){ 0 }, 1, 20 * S);
     assert_true(quality_is_bad(look(s, 0, 21 * S)->quality));
     store_write(s->store, &(struct sample){ .tag = 0, .value = 9, .quality = QUALITY_GOOD }, 1, 10 * S - 1, 1009 * S);
-    assert_true(quality_is_bad(look(s, 0, 21 * S)->quality)); /* the sample is older than the known value */
+    /* this sample is older than the last known value, so it must not make the reading usable */
+    assert_true(quality_is_bad(look(s, 0, 21 * S)->quality));
     store_write(s->store, &(struct sample){ .tag = 0, .value = 42, .quality = QUALITY_GOOD }, 1, 10 * S - 1, 1010 * S);
     assert_true(look(s, 0, 21 * S)->value == 42);
     assert_false(quality_is_bad(look(s, 0, 11 * S)->quality));
@@ -272,7 +276,8 @@ CASE(all_who_listen_hear_until_they_leave)
     assert_int_equal(other, 3 + 2 * 10); /* both tags of the link */
 }
 
-/* Before the first sample the store has no wall clock time: the loss of a source must not be dated 1970. */
+/* Before the first sample the store knows no UTC time. If a source is lost then, the loss must not be reported with a time in
+   1970. */
 CASE(what_is_lost_at_first_is_not_told_at_a_wrong_time)
 {
     int64_t heard = 0;
@@ -321,7 +326,8 @@ CASE(a_value_that_never_moves_is_doubted)
     assert_quality(look(s, 1, 1000 * S)->quality, QUALITY_GOOD); /* this tag has no flatline_s */
 }
 
-/* A gateway still answers with the last values of a controller that has stopped. */
+/* A controller has stopped, and its gateway still answers with the last values. The heartbeat tag, which no longer changes,
+   reveals that. Tags whose quality comes from another tag of this controller must then be Bad as well. */
 CASE(a_stopped_heartbeat_makes_quality_tags_unreadable)
 {
     s->plant->sources[0].heartbeat_s = 3;
@@ -341,7 +347,7 @@ CASE(a_stopped_heartbeat_makes_all_bad)
     s->plant->sources[0].heartbeat_tag = 1;
     set_up_again(s);
     write_one(s, 0, 20, QUALITY_GOOD, 0);
-    assert_quality(look(s, 0, 0)->quality, QUALITY_BAD_WAITING); /* the heartbeat is not known yet */
+    assert_quality(look(s, 0, 0)->quality, QUALITY_BAD_WAITING); /* the heartbeat tag has no reading yet */
     for (int t = 0; t < 10; t++) {
         write_one(s, 0, 20, QUALITY_GOOD, t * S);
         write_one(s, 1, t, QUALITY_GOOD, t * S);
@@ -358,7 +364,7 @@ CASE(a_stopped_heartbeat_makes_all_bad)
     }
     write_one(s, 1, 10, QUALITY_GOOD, 20 * S);
     assert_quality(look(s, 0, 20 * S)->quality, QUALITY_GOOD);
-    write_one(s, 1, 0, QUALITY_BAD_CONFIGURATION, 21 * S); /* the heartbeat tag became unreadable, which also counts as no change */
+    write_one(s, 1, 0, QUALITY_BAD_CONFIGURATION, 21 * S); /* the heartbeat tag can no longer be read, which counts as no heartbeat */
     assert_quality(look(s, 0, 22 * S)->quality, QUALITY_GOOD);
     assert_quality(look(s, 0, 23 * S)->quality, QUALITY_BAD_DEVICE_FAILURE);
 }
@@ -388,7 +394,7 @@ CASE(other_tags_vouch)
     store_listen(s->store, on_sample_event, heard);
     write_one(s, 0, 20, QUALITY_GOOD, 0);
     write_one(s, 2, 30, QUALITY_GOOD, 0);
-    assert_quality(look(s, 0, 0)->quality, QUALITY_UNCERTAIN); /* tag 0 gets its quality from another tag, which has no value yet */
+    assert_quality(look(s, 0, 0)->quality, QUALITY_UNCERTAIN); /* the quality of tag 0 comes from tag 1, which has no reading yet */
     const struct {
         double word;
         uint32_t pattern, any;
@@ -397,10 +403,12 @@ CASE(other_tags_vouch)
                   { 0x0C, QUALITY_BAD_SENSOR_FAILURE, QUALITY_GOOD },
                   { 0, QUALITY_BAD_SENSOR_FAILURE, QUALITY_BAD_SENSOR_FAILURE },
                   { -1, QUALITY_BAD_SENSOR_FAILURE, QUALITY_GOOD },
-                  { 0x1p62 + 0x1p10, QUALITY_UNCERTAIN, QUALITY_UNCERTAIN } }; /* the lowest bits of the 64 are unknown */
+                  /* a double cannot represent all 64 bits of this number, so the lowest bits, and with them the quality, are
+                     unknown */
+                  { 0x1p62 + 0x1p10, QUALITY_UNCERTAIN, QUALITY_UNCERTAIN } };
     for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
         write_one(s, 1, cases[i].word, QUALITY_GOOD, S);
-        /* tag 0 has its quality from tag 1: its change is reported at once, not with its own next sample */
+        /* the quality of tag 0 changes with tag 1 and must be reported at once, without a new sample of tag 0 */
         assert_quality(heard[0], cases[i].pattern);
         assert_quality(heard[2], cases[i].any);
         assert_quality(look(s, 0, S)->quality, cases[i].pattern);
@@ -415,7 +423,8 @@ CASE(other_tags_vouch)
     assert_quality(look(s, 0, 3 * S)->quality, QUALITY_UNCERTAIN);
 }
 
-/* Wall clock times of samples are for display only; ages use the monotonic clock. */
+/* The UTC clock is set. Ages of readings come from the monotonic clock, so no reading may become fresh or stale by that; UTC
+   times are for display only. */
 CASE(a_step_of_the_wall_clock_makes_nothing_fresh_or_stale)
 {
     store_write(s->store, &(struct sample){ 0, 7, QUALITY_GOOD }, 1, 10 * S, 1000 * S);
@@ -482,7 +491,8 @@ CASE(says_when_a_reading_gets_stale)
     assert_true(take(s, 9 * S) == INT64_MAX); /* both readings are stale */
 }
 
-/* Random writes and pauses: the reported time since which a reading is stale is the first at which a snapshot shows that quality. */
+/* Writes samples at random and pauses. For each reading that became stale, the store must report the time of that, which must
+   be the time from which snapshots show the stale quality. */
 CASE(says_since_when_a_reading_is_old)
 {
     enum { STEP = S / 100 };
@@ -516,7 +526,8 @@ CASE(says_since_when_a_reading_is_old)
     assert_true(found > 1000);
 }
 
-/* When the heartbeat returns, a reading is usable from that time on, not from when its value would have counted as unchanged. */
+/* After the heartbeat has returned, the reading must be Good again, and store_aged_ns() must no longer report a time at which time
+   alone made it Bad (it then returns the present time). */
 CASE(a_reading_is_usable_again_when_the_heartbeat_returns)
 {
     s->plant->sources[0].heartbeat_s = 2;
@@ -532,7 +543,8 @@ CASE(a_reading_is_usable_again_when_the_heartbeat_returns)
     assert_true(store_aged_ns(s->store, 0, 5 * S) == 5 * S);
 }
 
-/* Random writes, losses, alarms and pauses: every change in a snapshot was reported to listeners or predicted by the due time. */
+/* Random writes, losses, alarms and pauses. Every change that a snapshot shows must have been reported to listeners before, or
+   lie at a time that the store had announced. */
 CASE(nothing_changes_unannounced)
 {
     struct snapshot *last = test_snapshot(3);

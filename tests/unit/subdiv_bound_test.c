@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Estimate of a level's subdivision from a sample of its triangles. */
+/* The number of triangles to which a level must be subdivided, estimated from a sample of its triangles. */
 #include "tests/support/test.h"
 
 #include "preprocess/subdivision/subdivide_impl.h"
@@ -9,7 +9,7 @@
 #define TRIANGLES 24000u
 #define PARTS 3u
 
-/* Makes a level whose triangle t has the vertices 3 t to 3 t + 2. */
+/* Makes a level of unconnected triangles: triangle t has the vertices 3 t to 3 t + 2. */
 static void make_level(struct level *level)
 {
     *level = (struct level){ .index_count = 3 * TRIANGLES, .primitive_count = PARTS };
@@ -45,7 +45,8 @@ TEST(a_sample_is_some_neighbours_of_every_part)
     level_finish(&sample);
 }
 
-/* Prepares `split` with three edges per triangle of the level; each edge's error is errors[triangle] times the allowed one. */
+/* Prepares a subdivision with three edges for each triangle of the level. errors: by triangle, the error of its edges as a
+   multiple of the allowed error. */
 static void take_in_hand(struct subdiv *split, const struct level *level, const float *errors)
 {
     size_t count = level->index_count / 3;
@@ -73,7 +74,8 @@ static void release(struct subdiv *split)
     mem_free(split->mesh.cuts);
 }
 
-/* An edge whose error is e times too large needs ceil(log4(e)) cuts. */
+/* Halving an edge divides its error by four, so an edge with e times the allowed error must be halved ceil(log4(e)) times. The
+   estimate must agree with the number of triangles that results. */
 TEST(a_sample_says_what_the_level_needs)
 {
     struct level level, sample;
@@ -91,7 +93,7 @@ TEST(a_sample_says_what_the_level_needs)
     take_in_hand(&part, &sample, errors);
     assert_true(comes_to(&whole, needed - 100));
     assert_false(comes_to(&whole, needed + 100));
-    /* an estimate from a sample of the triangles stays below the real need by a margin for chance */
+    /* the estimate from a sample must exceed 85 % of the real need, but not 110 %: a margin for chance is subtracted */
     assert_true(comes_to(&part, 0.85 * needed));
     assert_false(comes_to(&part, 1.1 * needed));
     whole.finest = true;
@@ -103,7 +105,8 @@ TEST(a_sample_says_what_the_level_needs)
     mem_free(errors);
 }
 
-/* One triangle, however large its error, says nothing about the others: the level is not given up because of it. */
+/* In the sample, a single triangle has a huge error. That says nothing about the triangles outside the sample, so the estimate
+   must not make preparation give up the level. */
 TEST(a_sample_is_not_sure_of_what_one_triangle_needs)
 {
     struct level level, sample;
@@ -116,7 +119,7 @@ TEST(a_sample_is_not_sure_of_what_one_triangle_needs)
     release(&part);
     take_in_hand(&part, &sample, errors);
     for (uint32_t t = 0; t < part.mesh.tri_count; t++)
-        part.mesh.tris[t].origin = 0; /* all triangles are pieces of triangle 0 */
+        part.mesh.tris[t].origin = 0; /* makes all triangles count as pieces of the same original triangle */
     assert_false(comes_to(&part, 0.9 * TRIANGLES));
     release(&part);
     level_finish(&level);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Shadow lookups that use the bounds of tiles equal lookups of all texels, bit by bit. */
+/* Shadow lookups of the software renderer: the bounds of shadow map tiles decide most points without reading texels. The
+   results must be bit-identical to lookups that read all texels. */
 #include "render/soft/lookups.h"
 
 #include "tests/support/test.h"
@@ -7,11 +8,12 @@
 enum { SIDE_PX = 100, TILES = (SIDE_PX + SUN_TILE_STEP_PX - 1) / SUN_TILE_STEP_PX, ROUNDS = 20000, AREA_PX = 20 };
 
 struct lookup_counts {
-    /* number of points in light or shadow: told: decided by a tile's bounds; open: looked up in texels; half: of those, partly lit */
+    /* numbers of points: told: decided by the bounds of a tile; open: for which texels had to be read; half: of those, partly
+       lit */
     int told, open, half;
 };
 
-/* Returns the depth of a texel in a random map with flat areas, slopes and noise. */
+/* Returns the depth at (x, y) of a random shadow map, which has flat areas, slopes and noise. */
 static uint16_t depth_at(const uint16_t areas[], int x, int y)
 {
     uint16_t area = areas[y / AREA_PX * (SIDE_PX / AREA_PX) + x / AREA_PX];
@@ -52,7 +54,8 @@ static int whole_within_map(float part)
     return px < 0 ? 0 : px > SIDE_PX - 1 ? SIDE_PX - 1 : (int)px;
 }
 
-/* Makes random points, some slightly outside the map; depths are random or close to the depth of a texel of the tile. */
+/* Makes random points to look up, some of them slightly outside the map. Their depths are random, or close to that of a texel
+   nearby. */
 static void places_at_random(const struct soft_light *light, lanes at[3])
 {
     for (int i = 0; i < LANES; i++) {

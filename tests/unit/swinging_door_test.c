@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The swinging-door filter: which samples of a stream it keeps, and how close the line through them stays to all samples. */
+/* The swinging-door filter, which decides which samples of a stream are stored, so that the line through them stays within the
+   deadband of all samples. */
 #include "tests/support/test.h"
 
 #include "history/swinging_door.h"
@@ -36,7 +37,7 @@ static void end(struct door_run *run)
     run->kept_count += swinging_door_end(&run->door, &run->params, run->kept + run->kept_count);
 }
 
-/* Returns the value at t_us on the line through the kept points; *quality receives its quality. */
+/* Returns the value at t_us on the line through the stored points, and its quality in *quality. */
 static double read_back(const struct door_run *run, int64_t t_us, uint32_t *quality)
 {
     int i = 0;
@@ -67,7 +68,8 @@ static double noise(void)
     return (double)rand() / RAND_MAX - 0.5;
 }
 
-/* Random walks, noise, jumps, flat parts and lost quality: the line never deviates by more than promised. */
+/* Streams with random walks, noise, jumps, flat parts and lost quality: the line through the stored points must never deviate
+   from a sample by more than allowed. */
 TEST(the_line_keeps_its_promise)
 {
     for (unsigned seed = 1; seed <= 300; seed++) {
@@ -142,7 +144,8 @@ TEST(a_switch_has_steps)
     assert_int_equal(run->kept_count, 11);
 }
 
-/* Daylight saving does not affect UTC, but setting the clock back does. */
+/* The clock is set back, so timestamps go back: no sample may be lost. (Daylight saving has no effect, because timestamps are
+   UTC.) */
 TEST(a_clock_set_back_loses_nothing)
 {
     struct door_run *run = begin(0.5, 0.5, 100000 * S);
@@ -171,8 +174,9 @@ TEST(what_is_held_is_the_newest)
     assert_int_equal(held.t_us, 3 * S);
 }
 
-/* The line to the newest sample, which the filter may not keep, is as close to the samples as the line through kept points. A
-   step must not look like a ramp until the next point is kept. */
+/* Queries about the present also get the newest sample, which the filter may not store later. The line to it must be as close
+   to all samples as the line through stored points; in particular, a step must not look like a ramp until the next point is
+   stored. */
 TEST(whoever_reads_now_is_promised_the_same)
 {
     srand(20260101);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tag lists exported by control systems, in various encodings and with various separators, and errors in them. */
+/* Tag lists exported by other systems: their encodings, separators and columns, and errors in them. */
 #include "preprocess/match/tag_export.h"
 
 #include "tests/support/test.h"
@@ -64,7 +64,7 @@ TEST(test_ignition)
         "{\"name\":\"PT-7\",\"tagType\":\"AtomicTag\",\"documentation\":\"feed\\u0007 pressure\"}]}]}"));
     assert_string_equal(list.format, "Ignition (JSON)");
     assert_int_equal(list.count, 3);
-    assert_int_equal(list.renamed, 0); /* members of instances have their full path from the root */
+    assert_int_equal(list.renamed, 0); /* members of instances are named by their full path, so no name had to be made unique */
     check(&list, 0, EXPORT_NAME, "Area1/E-101/TT");
     check(&list, 0, EXPORT_ADDRESS, "ns=1;s=[plc]HR1");
     check(&list, 0, EXPORT_SCALED_HIGH, "150.5");
@@ -86,7 +86,7 @@ TEST(test_ignition)
     assert_non_null(strstr(why, "line 1: not JSON"));
 }
 
-/* Export of the SCADA system Ignition (JSON): a provider with these data types and tags. */
+/* JSON export of the SCADA system Ignition: one tag provider with these data types and tags */
 #define PROVIDER(types, tags)                                                                                                              \
     "{'name':'','tagType':'Provider','tags':[{'name':'_types_','tagType':'Folder','tags':[" types                                          \
     "]},{'name':'A','tagType':'Folder','tags':[" tags "]}]}"
@@ -98,12 +98,13 @@ TEST(test_ignition)
     TYPE("Pump", "'parameters':{'Dev':{'dataType':'String','value':'PLC1'},'No':{'dataType':'Integer','value':0}},'tags':[" MEMBER(        \
                      "T", ",'engUnit':'°C','engHigh':120,'opcItemPath':" BOUND("[{Dev}]HR{No}")) "]")
 
-/* Fields of a type's member that an instance omits or overrides. */
+/* Ignition data types (UDT) with members: an instance may omit a member's fields, which then come from the type, or override
+   them. */
 TEST(test_udt_kinds)
 {
     static const struct {
         const char *kind, *json;
-        const char *name, *unit, *high, *address; /* expected fields of the first tag that is read */
+        const char *name, *unit, *high, *address; /* expected fields of the first tag in the list */
         size_t count;
         const char *remark; /* NULL: none */
     } cases[] = {
@@ -243,12 +244,12 @@ TEST(test_udt_kinds)
     print_message("# %zu of %zu kinds of UDT\n", sizeof(cases) / sizeof(*cases), sizeof(cases) / sizeof(*cases));
 }
 
-/* Column headers of lists in other languages and from other systems: which columns are recognised. */
+/* Column headers of other systems and in other languages: the right columns must be recognised. */
 TEST(test_header_kinds)
 {
     static const struct {
         const char *kind, *text;
-        const char *name, *address, *unit, *low, *high, *description; /* expected fields of the first tag that is read */
+        const char *name, *address, *unit, *low, *high, *description; /* expected fields of the first tag in the list */
     } cases[] = {
         { "German", "Messstelle;Adresse;Einheit;Messbereich von;Messbereich bis;Bezeichnung\nT1;4001;°C;0;150;Lager\n", "T1", "4001",
           "°C",
@@ -364,7 +365,8 @@ TEST(test_header_kinds)
     print_message("# %zu of %zu kinds of headers\n", sizeof(cases) / sizeof(*cases), sizeof(cases) / sizeof(*cases));
 }
 
-/* Names that look alike cause a warning, and both tags stay. */
+/* Names that differ only in characters that look alike, such as a hyphen and a dash: the list is read with a warning, and both tags
+   are kept. */
 TEST(test_alike)
 {
     static const char *const others[] = { "PI–101", "PI‑101", "PI−101", "PI－101", "ＰＩ-101", "PI-101\u00a0", "\u200bPI-101",
@@ -454,8 +456,8 @@ TEST(test_encodings)
         tag_export_finish(&list);
     }
     assert_true(read_text(&list, "\xef\xbb\xbfTag\nTT-\xff"
-                                 /* the file begins with a byte order mark, so it is UTF-8: the wrong byte is replaced, and no other
-                                    encoding is guessed */
+                                 /* the byte order mark says that the file is UTF-8, so an invalid byte is replaced instead of
+                                    guessing another encoding */
                                  "1\n"));
     assert_int_equal(list.damaged, 1);
     check(&list, 0, EXPORT_NAME,
@@ -545,7 +547,7 @@ TEST(test_checksum)
     mem_free(bytes);
 }
 
-/* A workbook with a cover, a hidden sheet and a list, whose parts have unusual names. */
+/* An Excel workbook with a cover sheet, a hidden sheet and the list, in which the files of the package have unusual names. */
 TEST(test_sheets)
 {
     struct tag_export list;
@@ -576,7 +578,8 @@ TEST(test_sheets)
     tag_export_finish(&list);
 }
 
-/* Reads a workbook of `count` sheets that all refer to one part. */
+/* Reads an Excel workbook with `count` sheets, all of which refer to the same file of the package. Returns whether it was
+   accepted. */
 static bool read_sheets(int count, struct tag_export *list)
 {
     char *path = temp_path(folder, "sheets.xlsx");

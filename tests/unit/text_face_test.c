@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Text that DejaVu Sans has no glyphs for is drawn in a font that has them. */
+/* Characters that the font DejaVu Sans lacks, such as Korean ones, must be drawn with another font that has them. */
 #include "tests/support/test.h"
 #include <stdbool.h>
 
@@ -17,7 +17,7 @@ static cairo_t *begin(cairo_font_weight_t weight)
     return cairo;
 }
 
-/* Returns how many of a text's glyphs exist in the selected font. */
+/* Returns how many characters of a text exist in the font that is selected in `cairo`. */
 static int count_known(cairo_t *cairo, const char *text)
 {
     cairo_glyph_t *glyphs = NULL;
@@ -45,7 +45,7 @@ static bool has_hangul(void)
 
 TEST(korean_has_its_letters)
 {
-    static const char text[] = "\uc628\ub3c4 TE-171 \uc2dc\ud5d8"; /* the text has 4 Korean characters, 6 Latin ones and 2 blanks */
+    static const char text[] = "\uc628\ub3c4 TE-171 \uc2dc\ud5d8"; /* 12 characters: 4 Korean ones, 6 Latin ones and 2 blanks */
     if (!has_hangul()) {
         print_message("no font for Korean: package fonts-nanum\n");
         skip();

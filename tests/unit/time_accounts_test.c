@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Fair sharing of render time among addresses, tested by simulating clients and measuring the time of each. */
+/* Sharing of the render time among client addresses: simulates clients and measures how much time each address gets. */
 #include "service/time_accounts.h"
 
 #include "tests/support/test.h"
@@ -26,7 +26,7 @@ TEST(each_address_has_half_of_the_time)
     struct time_account *large = time_accounts_join(&accounts, 1), *small = time_accounts_join(&accounts, 2);
     int64_t had_ns[2] = { 0 };
     for (int i = 0; i < 29; i++)
-        /* further sessions from an address share the account of its first session */
+        /* a second session from the same address shares the account of the first one */
         assert_ptr_equal(time_accounts_join(&accounts, 1), large);
     while (had_ns[0] + had_ns[1] < 60 * NS_PER_S) {
         struct time_account *next = who_has_had_less(large, small);
@@ -48,7 +48,7 @@ TEST(who_comes_anew_owes_what_it_had)
     assert_ptr_equal(who_has_had_less(greedy, other), other);
     for (int i = 0; i < 60; i++)
         serve(&accounts, other, 20 * NS_PER_MS);
-    /* the address with less past render time has caught up, so nothing about it needs to be remembered */
+    /* the address has got as much time as the others, so its account need not be kept after it has left */
     time_accounts_leave(&accounts, &greedy);
     assert_int_equal(accounts.count, 1);
     greedy = time_accounts_join(&accounts, 1);
@@ -57,8 +57,8 @@ TEST(who_comes_anew_owes_what_it_had)
     time_accounts_finish(&accounts);
 }
 
-/* An address requests large frames one after another and abandons each. Another address, which was charged more, keeps refining
-   a session and requests one snapshot. */
+/* One address requests large frames all the time and abandons each. Another address, which has used more time so far, refines a
+   session and requests one snapshot. The snapshot must be drawn after a limited number of the large frames. */
 TEST(no_request_waits_for_frames_without_end)
 {
     enum { GREEDY, SESSION, SNAPSHOT, CLAIMS };
@@ -80,7 +80,7 @@ TEST(no_request_waits_for_frames_without_end)
         served_ns = scheduler_asked(claim->spent_ns, served_ns);
         time_accounts_served(&accounts, account, SCHEDULER_LONG);
         if (first == GREEDY)
-            /* the frame was given up, so only the address is charged */
+            /* the frame was abandoned, so its time is charged to address 1 and not to the claim of a session */
             time_accounts_charge(&accounts, 1, SCHEDULER_LONG, cost_ns[GREEDY]);
         else
             account->spent_ns[SCHEDULER_LONG] += cost_ns[first];
@@ -89,7 +89,7 @@ TEST(no_request_waits_for_frames_without_end)
         time_accounts_asked(&accounts, account, SCHEDULER_LONG);
     }
     assert_int_equal(turns[SNAPSHOT], 1);
-    /* at most as many frames of 0.9 s as fit into the 5 s charged to the other address beforehand */
+    /* expected number of the large frames: those of 0.9 s each that fit into the 5 s by which the other address was ahead */
     assert_in_range(turns[GREEDY], 1, 7);
     assert_in_range(turns[SESSION], 0, 1);
     time_accounts_finish(&accounts);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The token file: which tokens are accepted, which are revoked, and which files admit nobody. */
+/* The token file: which tokens are accepted and which are revoked, and which files are refused so that nobody is admitted. */
 #include "access/tokens.h"
 
 #include "tests/support/test.h"
@@ -95,7 +95,7 @@ CASE(a_token_may_be_for_one_display)
     assert_int_equal(read.display, 12);
     assert_true(read.unattended);
     assert_int_equal(tokens_role(tokens, &read, NOW_NS), ROLE_VIEWER);
-    read.display = 1; /* as if the file had meanwhile given the token another display */
+    read.display = 1; /* pretends that the file gave this token another display number meanwhile */
     assert_int_equal(tokens_role(tokens, &read, NOW_NS), ROLE_NOBODY);
     tokens_destroy(&tokens);
     static const char *const bad[] = { "room", "room:", "room:0", "room:17", "room:1x", "room:-1", "room:111111111111", ":1", "a b:1", "" };
@@ -186,7 +186,8 @@ CASE(wrong_lines_let_in_nobody_and_leave_the_others)
     tokens_destroy(&tokens);
 }
 
-/* Looks twice, because a changed file is read only once it has stopped changing. Returns whether it was the second look that read it. */
+/* Calls tokens_look() twice, because a changed file is read only after it has been unchanged between two calls. Returns whether
+   the second call, and not the first, read the file. */
 static bool look_until_read(struct tokens *tokens)
 {
     bool first = tokens_look(tokens);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Parallel transport compared with formulas for planes, spheres and boxes. */
+/* Parallel transport of vectors along surfaces, which gives the directions of arrows away from sensors, compared with formulas
+   for planes, spheres and boxes. */
 #include "tests/support/test.h"
 
 #include "base/math/vec.h"
@@ -12,7 +13,7 @@ struct carried {
     struct influence influence;
 };
 
-/* Transports the vector of one sensor at the vertex. */
+/* Transports the vector of one sensor, which is placed at this vertex, to all vertices of the shape. */
 static void carry(struct carried *c, size_t vertex)
 {
     const size_t count = c->shape.vertex_count;
@@ -46,7 +47,7 @@ static void normal_of(const struct carried *c, size_t vertex, double normal[3])
         normal[i] = (double)c->normals[vertex][i];
 }
 
-/* Computes the vector that arrives at a vertex. */
+/* Computes the vector in the plant's axes that arrives at a vertex. */
 static void vector_at(const struct carried *c, size_t vertex, double out[3])
 {
     double normal[3], x[3], y[3], angle = (double)c->influence.shares[vertex];
@@ -70,7 +71,7 @@ static size_t nearest_vertex(const struct cad *shape, const double point[3])
     return best;
 }
 
-/* On a plane a vector stays constant, even around slots; on a separate plate it is unknown. */
+/* On a plate the vector must stay the same everywhere, also behind slots; on a separate plate it must be unknown. */
 TEST(test_plane)
 {
     struct carried c = { 0 };
@@ -96,8 +97,8 @@ TEST(test_plane)
     finish(&c);
 }
 
-/* A long strip folded like an accordion: a path of 40 m in a box of 2.3 m. It can be unfolded, so a vector's component across
-   the strip stays the same to the end. */
+/* A strip of 40 m folded like an accordion within 2.3 m. Since the strip can be unfolded, the vector's component across the
+   strip must stay the same along its whole length. */
 TEST(test_accordion)
 {
     const double length_m = 40, forth = 0.05, up = sqrt(1 - forth * forth);
@@ -118,7 +119,7 @@ TEST(test_accordion)
     double first[3], here[3], worst = 0;
     vector_at(&c, 0, first);
     for (size_t v = 1; v < c.shape.vertex_count; v++) {
-        vector_at(&c, v, here); /* fails the test if the transported vector is unknown at this vertex */
+        vector_at(&c, v, here); /* vector_at() fails the test if the vector at this vertex is unknown */
         worst = fmax(worst, fabs(first[1] - here[1]));
     }
     printf("# accordion: worst %.2g\n", worst);
@@ -126,7 +127,8 @@ TEST(test_accordion)
     finish(&c);
 }
 
-/* Transport along great circles until close to the antipode, where all of them meet. */
+/* On a sphere, vectors are transported along great circles from the sensor. They are compared up to points close to the
+   opposite point, where all great circles meet. */
 TEST(test_sphere)
 {
     struct carried c = { 0 };
@@ -150,7 +152,7 @@ TEST(test_sphere)
         if (cosine < cos(0.9 * M_PI) || sine < 1e-6)
             continue;
         vec_cross(axis, first, turned);
-        for (int i = 0; i < 3; i++) /* Rodrigues' rotation formula about the axis of the great circle */
+        for (int i = 0; i < 3; i++) /* exact vector: Rodrigues' rotation formula about the axis of the great circle */
             want[i] = cosine * first[i] + sine * turned[i] + (1 - cosine) * vec_dot(axis, first) * axis[i];
         vector_at(&c, v, here);
         double error = 2 * asin(fmin(1, 0.5 * vec_distance(want, here)));
@@ -164,8 +166,8 @@ TEST(test_sphere)
     finish(&c);
 }
 
-/* Transport over an edge as if the faces were unfolded: a vector in the middle of the top that points to a side points down on
-   that side. */
+/* Across an edge, the vector continues as if the two faces were unfolded. On a box, a vector in the middle of the top that
+   points to one side must point downwards on that side. */
 TEST(test_box)
 {
     static const double middles[4][3] = { { 1, 0.5, 0.5 }, { 0.5, 1, 0.5 }, { 0, 0.5, 0.5 }, { 0.5, 0, 0.5 } };
@@ -194,8 +196,9 @@ TEST(test_box)
     finish(&c);
 }
 
-/* A sphere with three in five of its triangles, some with a corner moved anywhere. At borders, and at edges with more than two
-   triangles, weights may be negative and rotations around a triangle do not cancel; directions must still be known. */
+/* A sphere from which two in five triangles are missing and some corners are moved at random. At borders and at edges with more
+   than two triangles, weights may be negative, and rotations around a triangle do not cancel. The transported directions must
+   be known nevertheless. */
 TEST(test_tangle)
 {
     struct carried c = { 0 };

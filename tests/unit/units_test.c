@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Conversion of units: a value in one unit is never labelled with another; the conversion table against known numbers, and
-   every path by which values arrive. */
+/* Conversion of units: a value in one unit must never be shown with another unit. Tests the conversion factors against known
+   numbers, and every path by which values arrive. */
 #include "tests/support/test.h"
 
 #include "base/text/text.h"
@@ -21,7 +21,7 @@
 
 /* --- the table -------------------------------------------------------------------------------------------------------------- */
 
-/* Expected values from GNU units 2.22, except temperatures, which are converted by definition. */
+/* Expected values are those of GNU units 2.22; those of temperatures follow from the definitions of the scales. */
 TEST(values_are_converted)
 {
     static const struct {
@@ -139,13 +139,13 @@ CASE(rows_are_in_their_own_unit)
     assert_string_equal(t[0].scale.own_unit, "°F");
     assert_true(fabs(t[0].alarms.limits[LIMIT_L] - 10) < 1e-9 && fabs(t[0].alarms.limits[LIMIT_H] - 90) < 1e-9); /* a temperature */
     assert_true(fabs(t[0].deadband - 1) < 1e-9 && fabs(t[0].alarms.settings.deadband - 5) < 1e-9);               /* a difference */
-    /* limit and deadband of the group */
+    /* limit and deadband come from the tag's group, in the group's unit */
     assert_true(t[1].alarms.limits[LIMIT_H] == 90 && t[1].alarms.settings.deadband == 2);
     assert_true(t[4].alarms.limits[LIMIT_H] == 80 && t[4].deadband == 1 && !t[4].scale.change.converts);
     assert_true(!t[3].scale.change.converts && !t[5].scale.change.converts);
     assert_string_equal(t[3].unit, "°F");
     struct history_tag *kept = history_tags(c->plant);
-    assert_true(fabs(kept[1].within - 0.2 / 100 * 200) < 1e-9); /* a span of 360 °F is a span of 200 °C */
+    assert_true(fabs(kept[1].within - 0.2 / 100 * 200) < 1e-9); /* the tag's range spans 360 °F, which is a span of 200 °C */
     assert_string_equal(kept[0].unit, "°C");
     mem_free(kept);
     static const struct {
@@ -164,7 +164,7 @@ CASE(rows_are_in_their_own_unit)
     }
 }
 
-/* An expression is computed in the units of the tag rows that it uses. */
+/* In an expression, each tag has its value in the unit of that tag's row in the tag list. */
 CASE(derived_tags_compute_as_rows_say)
 {
     plant_case_load(c, yaml,
@@ -198,7 +198,7 @@ CASE(what_cannot_be_converted_is_an_error_at_its_cell)
     FOUND(c, { "tags.csv", 2, 25, "H of the group is 90, but HH is 87.7777778, in °C; expected LL < L < H < HH" });
 }
 
-/* After a reload, a reading in another unit is not taken over. */
+/* If a tag's unit changes at a reload, its old reading must not be carried over. */
 TEST_WITH(readings_are_not_adopted_in_another_unit, plant_case_set_up, plant_case_tear_down)
 {
     struct plant_case *c = *state, other = { .folder = c->folder, .path = c->path };
@@ -215,7 +215,7 @@ TEST_WITH(readings_are_not_adopted_in_another_unit, plant_case_set_up, plant_cas
     store_snapshot(is, 2, 2, snapshot);
     assert_int_equal(snapshot->readings[0].quality, QUALITY_BAD_WAITING);
     assert_true(snapshot->readings[1].value == 70);
-    /* the loop check was made in another unit, so it is void */
+    /* a loop check that was made with the other unit must become void: the fingerprints differ */
     assert_true(loop_check_fingerprint(c->plant, 0) != loop_check_fingerprint(other.plant, 0));
     assert_true(loop_check_fingerprint(c->plant, 1) == loop_check_fingerprint(other.plant, 1));
     plant_case_forget(&other);
@@ -223,8 +223,8 @@ TEST_WITH(readings_are_not_adopted_in_another_unit, plant_case_set_up, plant_cas
 
 /* --- files ------------------------------------------------------------------------------------------------------------------ */
 
-/* Values in files are in the unit of the tag's row unless the file states another. An export states its unit and can be
-   imported again unchanged. */
+/* Values in imported files have the unit of the tag's row unless the file states one. An exported file states its unit, and
+   importing it again must give the same values. */
 CASE(files_say_their_unit_or_mean_the_row_s)
 {
     static const int64_t start_us = INT64_C(1792886400) * US_PER_S;
@@ -245,7 +245,7 @@ CASE(files_say_their_unit_or_mean_the_row_s)
         struct history_reader *reader = history_reader_create(log, pass ? again : folder);
         assert_int_equal(history_series(reader, "F", start_us, start_us + 9 * US_PER_S, 100, &series), 0);
         history_reader_destroy(&reader);
-        assert_int_equal(series.points.count, 4); /* four points, including one without a value, after which the line ends */
+        assert_int_equal(series.points.count, 4); /* four points, of which the last has no value because the recording ends there */
         for (int i = 0; i < 3; i++)
             assert_true(fabs(series.points.at[i].value - (i < 2 ? 100 : 50)) < 1e-6);
         series_text_csv_head(&out, false);
@@ -263,7 +263,8 @@ CASE(files_say_their_unit_or_mean_the_row_s)
     diag_finish(&diag);
 }
 
-/* Every query returns values recorded in one unit in the tag's current unit, and an export file uses only one unit. */
+/* Values recorded in several units: every query must return all of them in the tag's present unit, and an exported file must
+   use one unit only. */
 CASE(what_was_recorded_is_shown_in_the_unit_of_now)
 {
     static const int64_t start_us = INT64_C(1792886400) * US_PER_S;
@@ -282,7 +283,7 @@ CASE(what_was_recorded_is_shown_in_the_unit_of_now)
         struct history_tag *tags = history_tags(c->plant);
         struct snapshot *snapshot = snapshot_create(1);
         struct history_series points, buckets;
-        /* in the second pass the reader knows no plant and takes the unit from the month file */
+        /* in the second pass the reader has no plant, so it must use the unit that the month file states */
         history_reader_show_by(reader, pass ? NULL : c->plant);
         assert_int_equal(history_series(reader, "F", start_us, start_us + 7200 * US_PER_S, 20000, &points), 0);
         assert_int_equal(history_intervals(reader, "F", start_us, start_us + 3600 * US_PER_S, 10, &buckets), 0);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Page addresses converted to query arguments: each valid form, and invalid ones. */
+/* Addresses of the page converted to query arguments: each valid form, and invalid addresses. */
 #include "message/view_address.h"
 
 #include "tests/support/test.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Visibility: shown, ghosted, hidden and clipped assets, and the client messages that set them. */
+/* Visibility of assets: shown, ghosted, hidden and clipped, and the client messages that set this. */
 #include "message/visibility.h"
 
 #include "tests/support/test.h"
@@ -54,7 +54,7 @@ TEST(a_box_keeps_what_is_in_it)
     assert_false(clip_keeps(&clip, (double[3]){ 0, 0, -3.1 }));
 }
 
-/* Random rays and planes: a point of the ray lies within the visible part if and only if every plane keeps it. */
+/* Random rays and section planes: a point of a ray is within the ray's visible part exactly if no plane cuts it away. */
 TEST(rays_are_cut_where_planes_are)
 {
     srand(3);

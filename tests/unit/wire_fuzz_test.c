@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Replays the seeds of the frame header fuzzer and random mutations of them. */
+/* Runs the fuzzer of frame headers on its stored seeds and on random changes of them. */
 #include "tests/fuzz/wire_fuzz.c"
 
 #include "tests/support/test.h"

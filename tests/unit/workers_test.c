@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The thread pool: every job runs once, in submission order; loops cover their whole range, even from within a job. */
+/* The pool of worker threads: every job runs once and in the order of submission; parallel loops cover their whole range, also
+   when a job starts them. */
 #include "base/workers.h"
 
 #include "tests/support/test.h"
@@ -35,7 +36,7 @@ struct ordered {
 static void note_order(void *arg)
 {
     struct ordered *job = arg;
-    job->order[(*job->next)++] = job->number; /* with one worker no two jobs run at once, so `next` needs no lock */
+    job->order[(*job->next)++] = job->number; /* not protected by a lock: with one worker no two jobs run at the same time */
 }
 
 TEST(one_worker_keeps_the_order)
@@ -95,7 +96,8 @@ static void loop_in_a_job(void *arg)
     workers_for(nested->workers, COUNT, 16, visit, &nested->range);
 }
 
-/* More concurrent loops than threads: none may wait for a helper that never comes. */
+/* Eight jobs on two threads each run a parallel loop, and so does this thread. Each loop must end, although no thread may be free
+   to help it. */
 TEST(loops_inside_of_jobs_end)
 {
     struct nested jobs[8];
@@ -118,7 +120,8 @@ struct waiter {
     _Atomic int *done, *wrong;
 };
 
-/* Every worker waits for tasks that no free worker is left to run. */
+/* A job that starts tasks and waits for them. All workers run such jobs, so no worker is free for the tasks, which must be run
+   by the waiting job itself. */
 static void begin_and_end(void *arg)
 {
     const struct waiter *waiter = arg;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which alarm a wall shows: the highest priority first, then the oldest; several take turns; during an alarm flood none.
+// Which alarm a wall shows in large type: the one with the highest priority, and of those the oldest. Equal ones take turns,
+// and during an alarm flood none is shown.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { AlarmCall, byEquipment, FLOOD, TURN_MS } from '../../clients/web/core/alarm_call.js';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rows of the alarm table and the journal: order, filter, area, export, and named time spans.
+// The tables of alarms and of the alarm journal: order of the rows, filter, area, export as CSV, and named time spans.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { areaOf, areasOf, isIn, journalRow, nextSort, sortRows, tableCsv } from '../../clients/web/core/alarm_table.js';

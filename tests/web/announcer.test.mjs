@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The live region that tells screen readers about new alarms.
+// The announcer: a live region of the page through which screen readers read out new alarms.
 import assert from 'node:assert/strict';
 import { mock, test } from 'node:test';
 import { Announcer } from '../../clients/web/app/alarms/announcer.js';

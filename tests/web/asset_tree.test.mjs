@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The list of equipment: its rows, search results, which rows are visible, and links made from templates.
+// The list of equipment: its rows, search results, which rows are in view, and links that are made from templates.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { linkUrl } from '../../clients/web/core/references.js';

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The camera's mathematics: fixed points stay fixed, the horizon stays level, and boxes fit into the picture.
+// The camera's mathematics: the point under the pointer stays there while the camera moves, the horizon stays level, and boxes
+// are fitted into the picture.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { basis, besideLegend, home, LEAST_M, projector, same, valid } from '../../clients/web/core/camera.js';
@@ -184,14 +185,15 @@ test('a tag is viewed from its own side, level, a little from above', () => {
     const north = face(camera, [2, 9, 3], box, 4);
     closeTo(north.eye, [2, 9 + 4 * Math.cos(Math.PI / 9), 3 + 4 * Math.sin(Math.PI / 9)]);
     closeTo(north.target, [2, 9, 3]);
-    const side = face(camera, [8, 8, 5], box, 4); // the camera looks at the box's long side, at a point near the side's end
+    const side = face(camera, [8, 8, 5], box, 4); // the camera must look at the long side of the box, at a point near that side's end
     assert.ok(side.eye[1] - 8 > 2 * (side.eye[0] - 8));
     const above = face(camera, [2, 4, 9], box, 4);
     assert.ok(valid(above) && dot(subtract(above.eye, above.target), subtract(camera.eye, camera.target)) > 0,
         'a tag on top is viewed from the user\'s side');
 });
 
-// Returns how much of the window the points fill along its limiting axis, and the window's edges on that axis.
+// Returns how much of the window the points fill along that axis (x or y) along which they fill most, and the edges of the
+// window on that axis.
 function filled(view, points, [width, height], { left = -1, right = 1, bottom = -1, top = 1 }) {
     const project = projector(view, width, height), at = points.map((point) => project(point));
     const across = at.map(([x]) => (2 * x) / width - 1), up = at.map(([, y]) => 1 - (2 * y) / height);
@@ -213,7 +215,7 @@ test('the first view: the plant fills the area that the legend leaves free, on a
 });
 
 test('a configured view is unchanged if everything fits, and steps back where a legend covers part of it', () => {
-    // the last point of the outline is not visible in the given view
+    // the last point, 400 m away, is outside the view
     const outline = [[-10, -10, 0], [10, -10, 0], [-10, 10, 0], [10, 10, 6], [0, 0, 9], [400, 0, 0]];
     const given = { eye: [-20, -30, 15], target: [0, 0, 2], up: [0, 0, 1], fov: 50, given: true }, { given: _, ...view } = given;
     const plant = { home: given, outline };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The source checks (tests/style, tests/layers, tests/maps) also read files that git does not track yet, but not those that it
-// ignores.
+// The source checks (tests/style, tests/layers, tests/maps) must also read files that git does not track yet, but not files
+// that git ignores.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { cpSync, mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';

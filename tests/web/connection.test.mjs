@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The connection's states, with a clock that the test advances.
+// The states of the page's connection to the server, with a clock that the test advances.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import {
@@ -168,11 +168,11 @@ test('a page that hung longer than the limit processes the messages that arrived
         connection.start();
         sockets[0].accept();
         sockets[0].say({ type: 'welcome' });
-        clock.advance(2100); // a ping is on its way
+        clock.advance(2100); // advances the clock until a ping has been sent
         clock.time += DEAD_MS + 1000;
         const [[id, late]] = clock.timers;
         clock.timers.delete(id);
-        late.f(); // the overdue timer runs before the message that arrived meanwhile is handled
+        late.f(); // runs the overdue timer before the message that arrived meanwhile is handled, as a browser may do
         assert.equal(connection.state, 'open');
         if (answers)
             sockets[0].say({ type: 'pong' });
@@ -266,7 +266,7 @@ test('a display reconnects after each of 200 losses, the last as soon as the fir
     connection.spreadMs = SPREAD_MS;
     connection.start();
     for (let loss = 0; loss < 200; loss++) {
-        for (let n = 0; n < loss % 5; n++) { // the server does not answer yet
+        for (let n = 0; n < loss % 5; n++) { // several attempts to connect fail
             sockets.at(-1).fail();
             clock.advance(waitOf(bench));
         }

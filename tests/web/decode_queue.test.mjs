@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The queue between network and decoder, which holds one frame: the newest.
+// The queue between network and video decoder: it holds at most one frame, the newest.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { DecodeQueue } from '../../clients/web/core/decode_queue.js';
@@ -8,7 +8,7 @@ const whole = (seq) => ({ seq, key: true, x: 0, y: 0, width: 64, height: 36, ful
 const part = (seq) => ({ ...whole(seq), key: false, y: 18, height: 18 });
 const settle = () => new Promise((resolve) => setImmediate(resolve));
 
-// A fake decoder that finishes a frame when the test tells it to.
+// Returns a queue with a fake decoder that finishes a frame only when the test says so.
 function bench() {
     const started = [], shown = [], failed = [], closed = [];
     let now = 0;

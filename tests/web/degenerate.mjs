@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Child process of degenerate.test.mjs: calls the page's pure functions with numbers that are not finite, zero, negative or
-// huge, and with lists that are empty, single or crowded. Prints the index of each case before it runs, and a line for each
-// function that returned a non-finite number. usage: node degenerate.mjs FIRST-CASE SEED
+// Child process of degenerate.test.mjs: calls the page's pure functions with corrupted arguments: numbers that are not finite,
+// zero, negative or huge, and lists that are empty, have one element or very many. Prints the number of each case before it
+// runs, and a line for each function that returned a non-finite number. usage: node degenerate.mjs FIRST-CASE SEED
 import { writeSync } from 'node:fs';
 import { CASES } from './degenerate_cases.mjs';
 
@@ -14,7 +14,7 @@ const random = (below) => {
     return Math.floor((state / 2 ** 32) * below);
 };
 
-// Returns the paths of all values in `o` for which `is` holds.
+// Returns the paths (lists of keys) of all values within `o` for which is(value) is true.
 function paths(o, is, at = []) {
     const own = is(o) ? [at] : [];
     return o === null || typeof o !== 'object' || ArrayBuffer.isView(o) ? own
@@ -44,7 +44,7 @@ function* variants(args) {
         yield numbers.reduce((all, path) => (random(3) === 0 ? changed(all, path, () => ODD[random(ODD.length)]) : all), args);
 }
 
-// Returns whether the result contains a non-finite number that was not simply copied from the arguments.
+// Returns whether the function computed a non-finite number, that is, one in the result that was not copied from the arguments.
 const made = (result, args) => paths(result, (v) => typeof v === 'number' && !Number.isFinite(v)).length > 0 &&
     paths(args, (v) => Object.is(v, result) || (v && typeof v === 'object' && JSON.stringify(v) === JSON.stringify(result))).length === 0;
 const printed = (v, most) => JSON.stringify(v, (_, x) => (typeof x === 'number' && !Number.isFinite(x) ? String(x) : x)).slice(0, most);
@@ -59,7 +59,7 @@ for (const [index, { name, call, args, ends }] of CASES.entries()) {
         try {
             result = call(...given);
         } catch (error) {
-            // expected errors: a list is too short for the function, or a date is out of range
+            // TypeError and RangeError are allowed: a list is too short for the function, or a date is out of range
             if (!(error instanceof TypeError || error instanceof RangeError))
                 found.add(`throws ${error}`);
             continue;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Valid arguments for the page's pure functions, which degenerate.mjs corrupts. ends: the function only has to return, because
-// it formats, compares or computes values that its callers have checked. For all other functions, every number in the result
-// must be finite.
+// Lists the page's pure functions with valid arguments, which degenerate.mjs corrupts. ends: the function need only return,
+// because it formats or compares values that its callers have checked. All other functions must return only finite numbers.
 import * as address from '../../clients/web/core/address.js';
 import * as approach from '../../clients/web/core/approach.js';
 import * as callouts from '../../clients/web/core/callouts.js';
@@ -45,11 +44,11 @@ const MODULES = { address, approach, callouts, camera, camera_flight: cameraFlig
     nearest, patterns, pins, query, scroll, section, split_view: splitView, sun, timings, trend_range: trendRange,
     trend_values: trendValues, vector, wall, wire,
     'app/alarm_bar': alarmBar, 'app/chart_style': chartStyle, 'app/drift': drift, 'app/toolbar': toolbar };
-globalThis.devicePixelRatio = 1; // charts are drawn in device pixels
+globalThis.devicePixelRatio = 1; // needed by charts, which draw in device pixels
 export const CASES = [];
 const called = new Set();
 
-// call: the function to call with args; by default the named function itself.
+// Adds a case: MODULES[module][name] is called with args. call: the function to call instead; ends: see above.
 function add(module, name, args, { ends = false, call = MODULES[module][name] } = {}) {
     called.add(`${module}.${name}`);
     CASES.push({ name: `${module}.js: ${name}`, call, args, ends });
@@ -78,7 +77,7 @@ const sight = { origin, direction }, shown = { carried: { range: [1, 2], clip },
 const recent = [{ picture, decodeMs: 2, hereUs: 6e6 }, { picture, decodeMs: 3, hereUs: 7e6 }];
 const marks = [{ us: 1e6, priority: 2 }, { us: 2e6, priority: 1 }];
 
-// Items of an overlay: labels, call-outs and markers.
+// Functions that place the overlay's labels, call-outs and markers.
 add('callouts', 'placeRings', [rings, area, 1, { width: 90, height: 36 }], { call: (order, where, unit, size) =>
     callouts.placeRings(order, { area: where, unit, taken: free, measure: () => size }).map(({ box: at, slot }) => ({ at, slot })) });
 add('labels', 'placeLabels', [rings, area, 1, [{ left: 0, top: 0, right: 40, bottom: 20 }], { width: 90, height: 36 }], { call: placed });
@@ -94,7 +93,7 @@ add('nearest', 'halfAt', [{ split: {} }, 640, 100], ENDS);
 add('nearest', 'nearestMarker', [rings, 30, 30, 12], ENDS);
 add('split_view', 'halves', [{ split: {} }, 641], ENDS);
 
-// Cameras. A move that would make a camera invalid for the server leaves it unchanged.
+// Functions that move cameras. If the result would be a camera that the server refuses, they must return the camera unchanged.
 for (const one of [eye, flat]) {
     add('camera', 'projector', [one, 640, 360, point], { call: (c, w, h, p) => camera.projector(c, w, h)(p) });
     add('camera_moves', 'fit', [one, box, 1.5, 1.08]);
@@ -249,7 +248,7 @@ add('wall', 'legendsLie', [640, 360, true], ENDS);
 add('wire', 'depthGridOf', [[2, 1, 2, 0]], { call: (bytes) => wire.depthGridOf(Uint8Array.from(bytes).buffer)?.more });
 add('wire', 'pictureSize', [640, 360]);
 
-// Cases for the page's own modules: charts and curves, which draw the geometry that they compute.
+// Cases of modules that draw charts and curves: the test records the coordinates that they draw.
 function drawing(draw, ...given) {
     const at = [], note = (...numbers) => { at.push(numbers); };
     const ctx = { canvas: HD, moveTo: note, lineTo: note, fillRect: note };
@@ -273,7 +272,8 @@ add('app/alarm_bar', 'heldSince', [{ model: { readings: [{ quality: 'bad' }], pl
     time: { atUs: null }, clockUs: () => 1e15, now: () => 1000 }, { tag: { index: 0 }, kind: 'HH' }], ENDS);
 add('app/alarm_bar', 'limitText', [{ model, time: { atUs: null } }, { tag: { index: 0, unit: 'K' }, value: 5, limit: 4 }, true], ENDS);
 
-// Functions that take texts, messages or objects of the page, and classes that represent a session.
+// Functions and classes that are not called here, because they take texts, messages or objects of the page, or represent a
+// session.
 const OTHERS = ['address.addressOf', 'address.readAddress', 'format.unitText', 'format.zoneOf', 'format.qualityText', 'format.title',
     'format.quantityText', 'format.worst', 'history.ask', 'history.witnesses', 'history.raised', 'history.severityOf',
     'trend_range.readRange', 'trend_values.alarmSpans', 'app/chart_style.strokeAlong',
@@ -283,7 +283,7 @@ const OTHERS = ['address.addressOf', 'address.readAddress', 'format.unitText', '
     'app/drift.driftText',
     'app/toolbar.Toolbar', 'wire.isWhole', 'wire.decodeMessage', 'wire.decodeBase64'];
 
-// Exported functions of the modules above that are neither called nor listed as functions without numbers.
+// Exported functions of MODULES that are neither called by a case nor listed in OTHERS; the test fails if there are any.
 export const forgotten = Object.entries(MODULES).flatMap(([module, all]) => Object.entries(all)
     .filter(([name, value]) => typeof value === 'function' && !called.has(`${module}.${name}`) && !OTHERS.includes(`${module}.${name}`))
     .map(([name]) => `${module}.js: ${name}`));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A clock that the test advances, and a fake WebSocket whose other end is the test.
+// A clock that the test advances, and a fake WebSocket whose other end the test controls.
 import { readFileSync } from 'node:fs';
 import { Connection } from '../../clients/web/core/connection.js';
 import { Session } from '../../clients/web/core/session.js';
@@ -20,7 +20,7 @@ class Clock {
 
     clearTimeout = (id) => this.timers.delete(id);
 
-    // Runs the timers that become due, in order and each at its own time.
+    // Advances the clock by ms. Runs the timers that become due, in order, with the clock at the time of each.
     advance(ms) {
         const end = this.time + ms;
         for (;;) {
@@ -65,7 +65,8 @@ export class Socket {
     }
 }
 
-// random: source of the reconnection jitter; 0.5 means no jitter.
+// Makes a connection with the test's clock and fake WebSockets. random: source of the random part of reconnection delays; 0.5:
+// no random part.
 export function makeConnection({ random = () => 0.5 } = {}) {
     const clock = new Clock(), sockets = [];
     const connection = new Connection({

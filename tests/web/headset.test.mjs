@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Geometry of headsets: matrices of the eyes, the wide picture that covers both, where rays hit surfaces, and where a user
-// stands.
+// Geometry for headsets: the matrices of the eyes, the wide picture that covers both eyes' views, where rays hit surfaces, and
+// where a user stands.
 import assert from 'node:assert/strict';
 import { mock, test } from 'node:test';
 import { Hands } from '../../clients/web/app/xr/hands.js';
@@ -13,12 +13,13 @@ import { moveBy } from '../../clients/web/core/warp_mesh.js';
 const UP = [0, 0, 1], DEGREE = Math.PI / 180;
 const isClose = (a, b, most = 1e-6) => assert.ok(length(subtract(a, b)) < most, `${a} is not ${b}`);
 
-// Returns the WebXR projection matrix of a frustum with these tangents, such as a Quest 3's.
+// Returns a projection matrix as WebXR states it, for a field of view with these tangents of its edges (those of a Quest 3, for
+// example).
 function projection(left, right, bottom, top, near = 0.1, far = 1000) {
     return [2 / (right - left), 0, 0, 0, 0, 2 / (top - bottom), 0, 0, (right + left) / (right - left), (top + bottom) / (top - bottom),
         -(far + near) / (far - near), -1, 0, 0, -2 * far * near / (far - near), 0];
 }
-// Returns the matrix of a pose in the room: rotated by yaw about y, at a position.
+// Returns the matrix of a pose in the user's room: a rotation by yawDeg about the vertical axis y, and a position.
 function matrix(yawDeg, [x, y, z]) {
     const c = Math.cos(yawDeg * DEGREE), s = Math.sin(yawDeg * DEGREE);
     return [c, 0, -s, 0, 0, 1, 0, 0, s, 0, c, 0, x, y, z, 1];
@@ -29,7 +30,7 @@ const viewsAt = (yaw, [x, y, z], turn = 0) => [[-0.0315, LEFT, turn], [0.0315, R
     transform: { matrix: matrix(yaw + more, [x + side * Math.cos(yaw * DEGREE), y, z - side * Math.sin(yaw * DEGREE)]) },
 }));
 
-// Returns the depth grid, without masks, of a flat wall at y = 5 with a board at y = 3 that is 1 m wide.
+// Returns a depth grid, without masks, of a flat wall at y = 5 and a board of 1 m width in front of it at y = 3.
 function gridOf(camera, width, height, cellPx) {
     const columns = Math.ceil(width / cellPx), rows = Math.ceil(height / cellPx), base = 1e-3, unitOf = 2e-4, near = [];
     for (let y = 0; y < rows; y++)
@@ -63,7 +64,7 @@ test('a point has the device\'s clip coordinates, even beyond or behind the view
     assert.ok(clip[2] < clip[3] && clip[2] > -clip[3], 'the depth is between the nearest and the farthest');
     const [, , z, w] = clipOf(eye, [[0.02, 0, 0], 1], 0.05);
     assert.ok(z < -w, 'a point too near is not drawn');
-    const [, , endless, far] = clipOf(eye, [[1, 0, 0], 0], 0.05); // a direction without a distance: the background
+    const [, , endless, far] = clipOf(eye, [[1, 0, 0], 0], 0.05); // distance 0 means a direction without a surface: the background
     assert.ok(endless < far && far > 0, 'an infinitely far point is not clipped');
 });
 
@@ -137,7 +138,8 @@ test('a ray hits the surface that the picture shows, wherever the ray starts', (
     const grid = gridOf(CAMERA, 1000, 1000, 8);
     isClose(hitOf(grid, CAMERA, [0.2, 0.3, 1.2], unit([0, 1, 0])).point, [0.2, 3, 1.2], 0.03);
     isClose(hitOf(grid, CAMERA, [0.2, 0.3, 1.2], unit([1, 2, 0.1])).point, [2.55, 5, 1.435], 0.05);
-    isClose(hitOf(grid, CAMERA, [0.1, -0.5, 1.2], unit([0, 1, 0.02])).point, [0.1, 3, 1.27], 0.03); // this ray begins behind the camera
+    // the ray begins behind the camera from which the depth grid was drawn
+    isClose(hitOf(grid, CAMERA, [0.1, -0.5, 1.2], unit([0, 1, 0.02])).point, [0.1, 3, 1.27], 0.03);
     assert.equal(hitOf(grid, CAMERA, [0, 0.3, 1.2], [0, -1, 0]), null);
     assert.equal(hitOf(grid, CAMERA, [0, 0.3, 1.2], [1, 0, 0]), null);
     assert.ok(hitOf(grid, CAMERA, [0, 0.3, 1.2], unit([1, -0.0001, 0])) === null, 'the search ends');

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Turns pointers, wheel and keys into camera moves.
+// How pointer, wheel and key events become camera moves.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { listenToInput } from '../../clients/web/app/input/input.js';

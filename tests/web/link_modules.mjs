@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Links all modules of the page without running them, and fails if one imports a name that another does not export. usage: node
-// --experimental-vm-modules link_modules.mjs
+// Links all modules of the page without running them. Fails if a module imports a name that the other module does not export.
+// usage: node --experimental-vm-modules link_modules.mjs
 import { readFileSync } from 'node:fs';
 import { SourceTextModule } from 'node:vm';
 import { filesIn } from './modules.mjs';

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Matches of tags to equipment, as the page reads, filters and decides on them.
+// The page's list of matches (which equipment each tag belongs to): reading it, filtering it, and recording the user's
+// decisions.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { Matches, patternOf, readCsv, readMatches, sizeOf, timesOf } from '../../clients/web/core/matches.js';

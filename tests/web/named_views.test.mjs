@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Named views: how a session switches to one, whatever it shows, and how ids are made from titles.
+// Named views: a session switches to a named view whatever it showed before, and ids are made from titles.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { readAddress, writeAddress } from '../../clients/web/core/address.js';
@@ -47,7 +47,8 @@ test('a viewer takes the parameters of the field from the saved view', () => {
 test('after a reload or a reconnect, a viewer takes the field\'s parameters from the saved view again', () => {
     const { session } = greeted('viewer'), group = session.model.groups[1];
     session.setParams({ named: 'own', group: group.id, look: 'flat', strength: 2, selected: 'E-101' });
-    // contains everything that the session shows, because the server starts from the named view's parameters
+    // the view to be restored must contain everything that differs from the named view, because the server starts from that
+    // view's parameters
     const again = regained(session, 'own');
     assert.deepEqual([again.named, again.group, again.look, again.selected, again.strength], ['own', group.id, 'flat', 'E-101', undefined]);
     assert.deepEqual([again.clip, again.split], [null, null]);

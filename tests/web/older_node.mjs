@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Lets tests run in Debian 12's node (18.20) too, which lacks the decompression format 'deflate-raw' and has an older
+// Makes tests run in the node of Debian 12 (18.20) too, which lacks the decompression format 'deflate-raw' and has an older
 // mock.timers.
 import { mock } from 'node:test';
 import { Duplex } from 'node:stream';
@@ -12,7 +12,7 @@ if (isOlder)
         return format === 'deflate-raw' ? Duplex.toWeb(createInflateRaw()) : new own(format);
     };
 
-// Replaces setTimeout() by a clock that mock.timers.tick() moves.
+// Replaces setTimeout(), so that timers run only when the test calls mock.timers.tick().
 export function mockTimeouts() {
     const apis = ['setTimeout'];
     mock.timers.enable(isOlder ? apis : { apis });

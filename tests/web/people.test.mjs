@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Labels of the users of other sessions.
+// Labels on the page for the users of other sessions.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { followerNames, leaderName } from '../../clients/web/core/people.js';

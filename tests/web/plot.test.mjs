@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A chart of a trend, with a recorder in place of the chart library.
+// The chart of trends, with an object that records calls instead of the chart library.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { Plot } from '../../clients/web/app/trends/plot.js';
@@ -23,7 +23,7 @@ class Chart {
     destroy() {}
 }
 
-// Returns a plot, and show(tags, answered), which shows these tags; those in `answered` have a series.
+// Returns a plot and a function show(tags, answered), which shows these tags; `answered`: the tags whose series have arrived.
 function plotOf(unit) {
     const colours = ['red', 'green', 'blue'];
     const view = { tags: [], look: {}, zone: 'UTC', unitOf: () => unit, colourOf: (tag) => colours[view.tags.indexOf(tag)] };
@@ -58,7 +58,8 @@ test('names of limits that are close together are placed side by side within the
     assert.ok(written.every(([text, x]) => x >= 40 && x + 10 * text.length <= 190) && written[1][1] > written[0][1] + 50);
 });
 
-// Returns the names that nameLimits() draws beside a curve through the points [x, y] of a chart: [{ text, left, right, top, bottom }].
+// Returns the limits' names that nameLimits() draws in a chart next to a curve through the points [x, y]: [{ text, left, right,
+// top, bottom }].
 function namesBeside(points, limits) {
     const { plot, show } = plotOf('bar'), drawn = [];
     show([{ name: 'A' }], [{ name: 'A' }]);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The reasons for failed tests in the last lines of a run (tests/support/reasons.py), extracted from the output of node and of
-// the C tests.
+// tests/support/reasons.py, which prints the reasons for failed tests at the end of a run: it must find them in the output of
+// node and of the C tests.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
@@ -32,7 +32,8 @@ test('late', { timeout: 50 }, () => new Promise((done) => setTimeout(done, 300))
 test('reasons.py extracts from node\'s output the error and the positions of helper and test', () => {
     const folder = mkdtempSync(join(tmpdir(), 'plantcast-reasons-')), file = join(folder, 'failing.mjs');
     writeFileSync(file, FAILING);
-    // the inner test run must not inherit NODE_TEST_CONTEXT: it would report to the outer test runner
+    // the inner test run must not inherit NODE_TEST_CONTEXT, with which it would report to this test's runner instead of
+    // printing
     const { NODE_TEST_CONTEXT: _, ...env } = process.env;
     const { stdout } = spawnSync(process.execPath, ['--test', '--test-reporter=tap', file], { encoding: 'utf8', env });
     rmSync(folder, { recursive: true });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Texts on the screen: numbers, ages, clock, legend, labels, meters and the page's address.
+// Texts that the page shows: numbers, ages, clock, legend, labels, meters, and the page's address.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { readAddress, writeAddress } from '../../clients/web/core/address.js';

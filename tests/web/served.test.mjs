@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The daemon serves the page's scripts without comment lines and indentation (server/net/http/site.c), except within template
-// literals, which it finds by their backticks. So every backtick must be in code, and no line of a template literal may begin
-// like a comment.
+// The daemon serves the page's scripts without comment lines and indentation (server/net/http/site.c). It must not change
+// template literals, which it finds by their backticks. So every backtick must belong to a template literal, and no line within
+// one may begin like a comment.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Assets that hide a tag from all sides become ghosts, by the cases of protocol/vectors/wall/sights.json. In a room, the eye
-// moves inside.
+// Assets that hide a tag from every side become ghosts (translucent), tested by the cases of protocol/vectors/wall/sights.json.
+// If the tag is in a room, the eye moves into the room instead.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
@@ -10,12 +10,13 @@ import { approaches } from '../../clients/web/core/approach.js';
 const CASES = JSON.parse(readFileSync(new URL('../../protocol/vectors/wall/sights.json', import.meta.url)));
 const CAMERA = { eye: [30, 30, 20], target: [0, 0, 0], up: [0, 0, 1], fov: 45 };
 const TAG = { name: 'TI-1', asset: 'own', position: [1, 0.5, 0.5] }, OWN = { id: 'own', bounds: { min: [0, 0, 0], max: [1, 1, 1] } };
-const CLOSE = [1, 0.5, 0.55]; // as in a place where everything is so close to the tag that there is no room for an eye
+const CLOSE = [1, 0.5, 0.55]; // distances at a place where everything is so close to the tag that the eye has no room
 const MIDDLE = [640, 360], WHOLE = { min: [0, 0, 0], max: [40, 40, 10] };
 const away = ({ eye }) => Math.hypot(...eye.map((m, i) => m - TAG.position[i]));
 const sides = approaches({ camera: CAMERA, point: TAG.position, box: OWN.bounds, aspect: 1280 / 720, whole: WHOLE, solid: true });
 
-// A fake plant: `before` lists, for some sides, the assets that hide the tag; on the other sides the tag's own asset hides it.
+// A fake plant. before: by side, the assets that hide the tag when it is seen from there; from all other sides the tag's own
+// asset hides it.
 class World {
     constructor({ ghosts, before }, others = []) {
         Object.assign(this, { camera: CAMERA, params: { ghost: ghosts }, before, handlers: {}, pickSeq: 0, welcomed: true,
@@ -50,7 +51,8 @@ for (const one of CASES) {
     });
 }
 
-// The tag's own asset is a hollow sphere around the tag: its wall of `thick` metres hides the tag from every eye outside.
+// Returns a plant in which the tag's own asset is a hollow sphere around the tag. Its wall of `thick` metres hides the tag from
+// every eye outside the sphere.
 function hollow(radius, thick, others) {
     const world = new World({ ghosts: [], before: {} }, others);
     world.answer = ({ x, y, camera }) => {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The sun's position: conversion to the server's parameters and back.
+// The sun's position: conversion between the page's controls and the server's parameters, in both directions.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { sunOf, sunText, towardsSun } from '../../clients/web/core/sun.js';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The rules of a wall, by the cases of protocol/vectors/wall.
+// The rules by which walls choose what they show, tested by the cases of protocol/vectors/wall.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
@@ -26,7 +26,7 @@ test('the test vectors of addresses give the same parameters and camera', () => 
     for (const { text, params, camera } of cases('addresses')) {
         const read = readAddress(text);
         if (read.params.baseline)
-            read.params.baseline = read.params.baseline.name; // the server gets only the baseline's name
+            read.params.baseline = read.params.baseline.name; // the server gets only the name of the baseline
         assert.deepEqual(read.params, params, text);
         assert.deepEqual(read.camera && cameraMessage(read.camera), camera, text);
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files that the page fetches first: everything that the first picture needs is requested at once, and is small.
+// The files that the page fetches first: everything that the first picture needs must be requested at once, and must be small.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
@@ -12,7 +12,7 @@ const all = (pattern) => [...page.matchAll(pattern)].map(([, path]) => path);
 const scripts = all(/<script type="module" src="([^"]+)"/g), sheets = all(/<link rel="stylesheet" href="([^"]+)"/g);
 const MOST_BYTES = 100000;
 
-// Returns a file roughly as the daemon serves it: scripts without comment lines and indentation (server/net/http/site.c).
+// Returns a file about as the daemon serves it: scripts lose their comment lines and indentation (server/net/http/site.c).
 const served = (path) => (path.endsWith('.js') ? read(path).replace(/(?<=\n) *(\/\/.*)?/g, '') : read(path));
 const weigh = (files) => files.reduce((sum, path) => sum + Buffer.byteLength(served(path)), 0);
 const ours = (language) => ['index.html', `words/${language}.js`, `words/lazy.${language}.js`, ...['app', 'core'].flatMap((folder) =>

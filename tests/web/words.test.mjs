@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The page's texts: every language has the same keys, none is missing or unused, each is in its file; and how a language is
-// chosen.
+// The texts of the page: every language must have the same keys, none may be missing or unused, and each must be in the right
+// file. Also tests how a language is chosen.
 import assert from 'node:assert/strict';
 import { readdirSync, readFileSync } from 'node:fs';
 import { test } from 'node:test';
@@ -10,7 +10,8 @@ import { filesIn, graph } from './modules.mjs';
 
 const WEB = new URL('../../clients/web/', import.meta.url);
 const read = (...names) => names.map((name) => readFileSync(new URL(name, WEB), 'utf8')).join('\n');
-// Texts of the page at start, of parts loaded later, of the import page, of the watchdog, and of headsets.
+// Files with the texts of a language: those needed at the start, of lazily loaded parts, of alarms, of the import page, of the
+// watchdog, and of headsets.
 const filesOf = (language) => ['', 'lazy.', 'alarms.', 'import.', 'watchdog.', 'xr.'].map((part) => `words/${part}${language}.js`);
 const tableOf = async (file) => readWords((await import(`../../clients/web/${file}`)).default);
 const tables = Object.fromEntries(await Promise.all(LANGUAGES.map(async (language) =>
@@ -74,8 +75,8 @@ test('each text has the plural forms of its language, and no others', () => {
     }
 });
 
-// Returns unused keys. A key counts as used by its whole name, or by its beginning if the rest is a value: `kind.${kind}`,
-// choices('side', 'top', ...).
+// Returns the keys of `table` that the modules and the markup do not use. A key is used if its whole name occurs, or its
+// beginning followed by a value: `kind.${kind}`, choices('side', 'top', ...).
 function unused(table, modules, markup) {
     const starts = [...modules.matchAll(/`([a-z]+\.)\$\{/g)].map(([, start]) => start);
     const families = [...modules.matchAll(/(?:choices|explained)\('(\w+)', ([^)]*)\)/g)].flatMap(([, kind, values]) =>
