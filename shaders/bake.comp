@@ -9,7 +9,9 @@ layout(local_size_x = 64) in;
 layout(binding = 1) uniform sampler2DArrayShadow sky_maps;
 layout(std430, binding = 1) readonly buffer Directions {
     mat4 map_from_plant[32];
-    vec4 direction[32]; // unit vector towards the sky direction that sky map i covers; w: brightness of the sky there
+    // by sky map (depth map seen from one direction of the sky): unit vector towards that direction; w: brightness of the sky
+    // there
+    vec4 direction[32];
 };
 // matrix from the coordinates of the vertices to plant axes, relative to the centre of the scene
 layout(location = 0) uniform mat4 plant_from_here;

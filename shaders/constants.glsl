@@ -4,10 +4,11 @@
 #ifndef CONSTANTS_GLSL
 #define CONSTANTS_GLSL
 
-// Weights in a surface's brightness of the light from sky and ground, and of sunlight (light_scalar() in light.glsl).
+// A surface's brightness is LIGHT_AMBIENT times the light that it gets from sky and ground, plus LIGHT_SUN times its sunlight
+// (light_scalar() in light.glsl).
 #define LIGHT_AMBIENT 0.52
 #define LIGHT_SUN 0.48
-// Factors on the light of the sky and on that of the sun in shading (pbr.glsl).
+// Factors by which the light of the sky and the light of the sun are multiplied in physically based shading (pbr.glsl).
 #define SKY_LIGHT 0.55
 #define SUN_LIGHT 0.78
 // Reflectance of a dielectric at normal incidence.

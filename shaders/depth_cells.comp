@@ -4,7 +4,8 @@
 layout(local_size_x = 64) in;
 struct Cell {
     float near, far;
-    uint upper, lower; // 64-bit mask: bit i is set if pixel i of the cell belongs to the nearer of the two depths
+    // 64-bit mask: bit i is set if pixel i of the cell shows the surface at depth `near`, clear if it shows the one at `far`
+    uint upper, lower;
 };
 layout(std430, binding = 0) buffer Cells { Cell cells[]; };
 layout(location = 0) uniform ivec2 grid; // columns and rows of the depth grid

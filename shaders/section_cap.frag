@@ -12,8 +12,8 @@ layout(location = 0) in vec2 clip;
 layout(location = 0) out vec4 color;
 #endif
 
-// Returns the depth (1: near plane, 0: far plane) where the pixel's ray enters the space that is not cut away. 1: the ray
-// begins inside it; negative: the ray misses it.
+// Returns the depth (1: near plane, 0: far plane) at which the pixel's ray enters the part of space that the section planes
+// keep. 1: the ray begins in that part; negative: it misses that part.
 float entry()
 {
     float top = 1.0, bottom = 0.0;

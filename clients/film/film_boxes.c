@@ -255,8 +255,9 @@ bool film_boxes_plain(const char *path, struct film_size *size, char why[FILM_BO
 
 enum { UNIT_SLICE = 1, UNIT_SLICE_OF_KEY = 5, UNIT_MESSAGE = 6, MESSAGE_TEXT = 5, MESSAGE_RECOVERY = 6 };
 
-/* Returns true if a NAL unit has only SEI messages that do not change the picture. A message is its type, its length and its content. Type
-   and length are each encoded as bytes of 255 and a last byte, whose sum is the number. Encoders write one message per unit. */
+/* Returns true if a NAL unit has exactly one SEI message, of a type that does not change the picture. A message is its type,
+   its length and its content. Type and length are each encoded as bytes of 255 and a last byte; the sum of these bytes is the
+   number. Units with several messages are refused, because encoders write one message per unit. */
 static bool is_plain_message(const uint8_t *unit, size_t count, char why[FILM_BOXES_WHY_BYTES])
 {
     unsigned type = 0;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One output of the video, such as SRT, with its own GStreamer pipeline. If the pipeline fails, the other outputs continue and
-   it is restarted. Call only in the thread of GLib's default main context. */
+/* One output of the video, such as SRT, with its own GStreamer pipeline. If the pipeline fails, it is restarted; the other
+   outputs continue meanwhile. Call only in the thread of GLib's default main context. */
 #ifndef VIDEO_BRANCH_H
 #define VIDEO_BRANCH_H
 #include "options.h"

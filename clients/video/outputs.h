@@ -13,7 +13,8 @@
 
 struct outputs;
 struct outputs *outputs_create(void);
-/* Frees the outputs and sets *outputs to NULL; accepts a pointer to NULL. All threads that push units must have ended before. */
+/* Frees the outputs and sets *outputs to NULL; accepts a pointer to NULL. All threads that call outputs_push() must have ended
+   before. */
 void outputs_destroy(struct outputs **outputs);
 /* Adds an output's pipeline; takes a reference on src, its source element. From the next key frame on, src receives encoded
    frames, timed by the running time of its own pipeline. */

@@ -6,9 +6,9 @@
 #include "outputs.h"
 
 struct rtsp;
-/* Starts to listen for RTSP clients. Returns NULL with the reason printed. The caller destroys it. */
+/* Starts to listen for RTSP clients. Returns the RTSP server, which the caller destroys, or NULL with the reason printed. */
 struct rtsp *rtsp_create(const struct video_options *options, struct outputs *outputs);
 void rtsp_destroy(struct rtsp **rtsp);       /* &NULL is fine; leaves NULL */
-guint rtsp_readers(const struct rtsp *rtsp); /* returns the number of client sessions. NULL is fine */
+guint rtsp_readers(const struct rtsp *rtsp); /* returns the number of client sessions; 0 for NULL */
 
 #endif

@@ -49,7 +49,7 @@ static const struct upset upsets[UPSETS] = {
 
 static const struct {
     const char *word;
-    double lag; /* factor by which such a control loop is slower than others */
+    double lag; /* factor by which control loops whose names contain the word are slower than others */
 } slow_loops[] = { { "storage", 60 }, { "weather", 60 }, { "steam", 20 } };
 
 struct process_state {

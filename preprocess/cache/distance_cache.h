@@ -31,7 +31,7 @@ struct distance_cache {
     pthread_mutex_t lock;
     /* --- below: under lock --- */
     struct distance_space *free; /* byte ranges of records that belong to no present sensor position */
-    size_t free_count, free_capacity, end; /* end: byte offset in the file behind the last record */
+    size_t free_count, free_capacity, end; /* end: byte offset in the file after the last record */
 };
 
 /* Opens or creates FOLDER/KEY.columns and looks up which of the `count` sensor positions places_m (asset frame, metres; must outlive the

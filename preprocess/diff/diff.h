@@ -28,7 +28,7 @@ struct diff_sensor {         /* a tag that is a sensor in both revisions */
     double moved_m;          /* distance between the surface points nearest to the sensor in the old and the new revision, metres */
     double place_moved_m;    /* movement of the position given by the tag list or the sensor's node, metres */
     double distance_m[2];    /* distance from the sensor's position to the surface in the old [0] and in the new [1] revision, metres */
-    double limit_m;          /* the report warns if a sensor is farther than this from the surface, metres */
+    double limit_m;          /* distance of a sensor from the surface above which the report warns, metres */
     double tolerance_m;
     bool far_moved; /* true: the surface under the sensor moved by more than the tolerance */
 };

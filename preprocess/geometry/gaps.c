@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Closes hair gaps in the drawn mesh with repair_join_points(), which also closes them in the surface for distances. */
+/* Closes hair gaps in the drawn mesh. Uses repair_join_points(), which also closes the gaps in the other mesh, on which
+   distances along the surface are computed. */
 #include "preprocess/geometry/gaps.h"
 
 #include "base/math/gap_split.h"

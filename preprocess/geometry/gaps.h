@@ -7,7 +7,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define GAPS_OF_SIZE 3e-4 /* width of the widest gap that is closed, relative to the diagonal of the main part's bounding box */
+/* width of the widest gap that is closed, relative to the diagonal of the asset's main part (without parts far from the rest)
+   */
+#define GAPS_OF_SIZE 3e-4
 #define GAPS_MOST_M 0.002 /* width of the widest gap that is closed, in metres; the smaller of both limits applies */
 
 /* Closes gaps up to GAPS_OF_SIZE and GAPS_MOST_M: moves the vertices on one side to the open edges on the other side. Two open

@@ -31,7 +31,8 @@ struct geometry_params {
     const char *nodes; /* patterns of the nodes to cut out (plant/models/nodes.h); NULL: all nodes */
     double unit_m;
     enum axis up;
-    /* widest gap to close, in metres, in the drawn mesh and in the surface for distances; 0: chosen from the model's size */
+    /* widest gap to close, in metres, both in the drawn mesh and in the mesh on which distances along the surface are computed;
+       0: chosen from the model's size */
     double tolerance_m;
 };
 

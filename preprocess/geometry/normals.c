@@ -77,8 +77,8 @@ static bool around_init(struct around *a, const float (*positions)[3], size_t ve
 
 /* --- computing the mean normal of the faces at one position ------------------------------------------------------------------ */
 
-/* Adds the normal of a corner's face to the sum, weighted by the face's angle at the corner. Skips the face if its normal is
- * more than the crease angle from the normal `own`. */
+/* Adds the normal of the face at `corner` to the sum, weighted by the face's angle at that corner. Skips the face if its normal
+   is more than the crease angle from `own`, the normal of the face for which the sum is computed. */
 static void add_face(const struct around *a, uint32_t corner, const double own[3], double sum[3])
 {
     const double *face = a->faces[corner / 3];

@@ -37,7 +37,7 @@ struct rvm_shape {
     uint32_t open_faces; /* bit i set: face i of rvm_shape_faces() is left out, because a neighbour covers it */
 };
 
-extern const int rvm_numbers[RVM_FACETS + 1]; /* by kind of primitive: number of dimensions behind the chunk's header */
+extern const int rvm_numbers[RVM_FACETS + 1]; /* by kind of primitive: number of dimensions that follow the chunk's header */
 
 /* A flat face of a primitive in the plant's frame: a circle or a rectangle. */
 struct rvm_face {

@@ -33,7 +33,7 @@ struct solving {
     struct gaussian_bodies bodies;
     double *covariance;  /* covariance between the sensors before scaling, [sensor][sensor] */
     double *root_mass_m; /* by row of the sparse system (one row per mesh point): square root of the point's area */
-    double *root_scale;  /* by connected component: square root of its factor `scale` */
+    double *root_scale;  /* by connected component: square root of scale[component] */
     /* by connected component: factor from the variance in the sparse system to the variance given in the plant file; 0: the
      * component has no sensor */
     double *scale;

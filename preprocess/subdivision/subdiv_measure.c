@@ -13,8 +13,8 @@
 
 /* interpolation error at an edge's midpoint, as a share of SUBDIV_AIM, below which the whole edge is assumed to be good */
 #define PROBABLE 0.4
-/* edge length, as a share of the distance to the nearest sensor, above which an edge is measured at all its sample points,
-   without the PROBABLE test */
+/* edge length, as a share of the distance to the nearest sensor, above which an edge is measured at all its sample points. A
+   good midpoint (PROBABLE) does not show that such a long edge is good. */
 #define CLOSE 0.5
 /* edge length, as a share of the distance to the nearest sensor, above which an edge is split in the middle, so that the split
    points of neighbouring edges line up */

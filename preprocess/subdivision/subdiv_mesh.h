@@ -23,7 +23,7 @@ struct subdiv_edge { /* an edge between two positions; shared by all levels of d
      * the finest level. TRIMESH_NONE: none */
     uint32_t origin[2];
     uint32_t middle;    /* position index of the split point; TRIMESH_NONE: not split */
-    uint32_t load;      /* value of mesh.loads for the last level of detail that split the edge */
+    uint32_t load;      /* number (count in mesh.loads) of the last level of detail that split the edge */
     /* head of the list of corners (3 * triangle + i) in the current level at which the edge begins, linked by mesh.next;
      * TRIMESH_NONE: no triangle of the level has the edge */
     uint32_t corner;

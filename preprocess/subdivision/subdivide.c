@@ -41,8 +41,8 @@
 #define FINEST_GROWTH 2.0
 #define FINEST_GROWTH_TRIS 100000.0
 #define WORTH 0.95 /* a coarser level is dropped if it would need more than this share of the next finer level's triangles */
-/* replaces WORTH if there are at least MANY_SENSORS, whose distances then take up most of a file, or if the finest level
- * reached its limit */
+/* the same share as WORTH, for at least MANY_SENSORS, whose distances then take up most of a file, or if the finest level
+   reached its triangle limit */
 #define WORTH_MANY 0.5
 #define MANY_SENSORS 128
 /* smallest number of triangles of a level whose size is first estimated from a sample; samples of smaller levels are unreliable */

@@ -39,7 +39,9 @@ struct backup_job {
     struct log *log;
     const char *folder;  /* backup folder */
     const char *history; /* value of --history */
-    json_t *files;       /* array of the manifest's entries: {"name":...,"bytes":...,"xxh128":...}; "service":true marks a file of --add */
+    /* array of the manifest's entries: {"name":...,"bytes":...,"xxh128":...}; "service":true marks a file that option --add put
+       into the backup */
+    json_t *files;
     json_t *added;       /* paths of --add */
 };
 
@@ -530,7 +532,8 @@ static int back_up_plant(struct backup_job *job, const char *plant_path, const c
 static int run_command(int argc, char **argv, int (*command)(int argc, char **argv, struct backup_job *job))
 {
     struct backup_job job = { .log = log_create(LOG_WARN), .files = json_array(), .added = json_array() };
-    /* owns the list of files, because `restore` and `verify` set job.files to a list owned by the manifest they read */
+    /* keeps the new list for json_decref() below: `restore` and `verify` replace job.files by the list inside the manifest that
+       they read, which the manifest frees */
     json_t *files = job.files;
     int code = command(argc, argv, &job);
     json_decref(files);

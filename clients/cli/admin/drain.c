@@ -12,8 +12,8 @@
 #include "base/clock.h"
 #include "clients/cli/commands.h"
 
-/* WAIT_S: seconds to wait for the daemon: 2 until a load balancer notices, 10 to close the sessions, 1 in reserve; LOOK_US:
-   microseconds between checks whether the daemon is done */
+/* WAIT_S: seconds to wait for the daemon: 2 until load balancers send it no new sessions, 10 to close its sessions, 1 in
+   reserve; LOOK_US: microseconds between checks whether the daemon is done */
 enum { WAIT_S = 13, LOOK_US = 50000 };
 
 static void print_usage(FILE *out)

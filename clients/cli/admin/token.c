@@ -95,7 +95,8 @@ static char *read_all(int fd, size_t size)
     return text;
 }
 
-/* Reads the token file. Returns NULL with the reason printed. A missing file reads as empty if may_be_new. */
+/* Reads the token file into a new text. Returns NULL with the reason printed. If the file is missing, returns "" with
+   may_be_new, else fails. */
 static char *read_file(const char *path, bool may_be_new)
 {
     struct stat st;

@@ -134,7 +134,8 @@ session.on('params', async () => {
         if (['difference', 'uncertainty', 'blind'].includes(half.show))
             modules.get('coverage');
     }
-    // loads the clip gizmo (handles of section planes) if section planes cut the plant, except on a wall
+    // loads the clip gizmo (handles of section planes) if section planes cut the plant; a video wall needs no handles, because
+    // nobody operates it
     if (params.clip && !document.body.classList.contains('wall') && await modules.get('clipGizmo'))
         refresh();
 });
@@ -277,7 +278,7 @@ offerVr();
 // Loads the watchdog of the main thread; retries later if the server does not answer.
 const watch = () => setTimeout(() => import('./common/watchdog.js').then(({ watchMainThread }) => watchMainThread(
     { scale: () => page.unit, reloads: document.body.classList.contains('wall') && parent === window })).catch(watch), WATCH_AFTER_MS);
-// no watchdog in a pane of a wall: the pane has the same main thread as the wall's page, which has a watchdog
+// no watchdog in a pane (iframe) of a video wall's page: both pages run in the same main thread, which the wall's page watches
 if (!new URLSearchParams(location.search).has('pane'))
     watch();
 // Opens the equipment list at the start if the window has room for it.

@@ -10,7 +10,7 @@ const CALLS = ['unacknowledged', 'active', 'returned', 'latched', 'acknowledged'
 export const calls = (state) => CALLS.includes(state);
 export const isWaiting = (state) => state === 'unacknowledged' || state === 'returned';
 export const isGone = (state) => state === 'returned' || state === 'latched'; // returned to normal: drawn hollow
-// Makes a tag-like object for the alarm of a device, which has no tag.
+// Makes an object with the members of a tag for the alarm of a device, which has no tag.
 const deviceOf = (name) => ({ name, index: null, group: null, asset: null, description: '' });
 
 const isOuter = ({ kind }) => kind === 'HH' || kind === 'LL';

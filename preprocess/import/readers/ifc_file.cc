@@ -15,7 +15,7 @@ namespace
 
 constexpr int MAX_NESTING = 64; /* maximum nesting depth of lists in an IFC file */
 
-/* Returns the offset behind the string, comment or single character of an IFC file that begins at `at`. */
+/* Returns the offset after the string, comment or single character of an IFC file that begins at `at`. */
 size_t skip_one(const std::string &bytes, size_t at)
 {
     size_t end = at + 1;

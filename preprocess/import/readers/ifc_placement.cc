@@ -101,7 +101,8 @@ int grid_placement(const ifc_model &in, int axis)
     return found == in.grids.end() ? 0 : found->second;
 }
 
-/* An IFC placement relative to another one, `above`. */
+/* An IFC placement: the transform `place` relative to the placement `above`; `above` absent: relative to the origin of the IFC
+   file. */
 struct relative_placement {
     value above;
     gp_Trsf place;

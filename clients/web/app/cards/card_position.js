@@ -22,7 +22,9 @@ export function cardPlace(card, free, at, marks = [], last = null) {
     return same && same.cost <= best.cost ? same : best;
 }
 
-// Returns all positions for a card of that size, preferred ones first: { side, left, top, most (maximum height) }.
+// Returns all positions for a card of this width and height in CSS pixels, preferred ones first: { side, left, top, most
+// (maximum height) }. left, top, right, bottom: edges of the free part of the picture; at: the point that the card describes,
+// or null.
 function placesOf(wide, tall, { left, top, right, bottom }, at) {
     const within = (low, n, high) => Math.round(Math.max(low, Math.min(high, n))), full = Math.min(TALLEST_PX, bottom - top);
     const place = (side, x, y, most = full) => ({ side, left: within(left, x, right - wide), top: within(top, y, bottom - tall), most });

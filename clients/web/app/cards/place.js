@@ -54,8 +54,8 @@ export class Place {
     hear(picked) {
         if (this.asked === null)
             return; // the card was closed meanwhile
-        // The server answers only the newest request for what is at a point. If another module has made one since, ignores its
-        // answer.
+        // The server answers only the newest request for what is at a point. An answer with another purpose is for another
+        // module, whose request has replaced this card's: the card gets no answer.
         if (picked.purpose !== 'place') {
             this.asked = null;
             return;

@@ -2,8 +2,8 @@
 // Segmented buttons and selection lists for the toolbar and the panels.
 import { make } from './dom.js';
 
-// Fills a row of buttons of which one is pressed. They are radio buttons, so that the keyboard works as usual. choices: list of
-// [value, text, title].
+// Fills a row of buttons of which one is pressed. They are radio buttons, so that the arrow keys move between them. choices:
+// list of [value, text, title].
 export function fillSegments(fieldset, name, choices, onChoose) {
     const row = make('div', { class: 'row' });
     for (const [value, text, title] of choices) {

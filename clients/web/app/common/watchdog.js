@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Watches the page's main thread from a worker. When the thread has been silent for 10 s, the worker draws a warning over the
-// page. In Chromium, a frame in another process (keeper/) can then also reload a wall's page.
+// page. If the page is shown on a video wall in Chromium, a frame in another process (keeper/) can then also reload the page.
 import { learnWords, say } from '../../core/words.js';
 import { make } from './dom.js';
 
 const BEAT_MS = 1000, BAND_PX = 92;
 
-// scale() returns the size of the warning's letters relative to a desktop page. reloads true: the page is a wall, which has no
-// user to reload it.
+// scale() returns the size of the warning's letters relative to a desktop page. reloads true: a page that hangs is reloaded,
+// because it is on a video wall, where no user could reload it.
 export async function watchMainThread({ scale = () => 1, reloads = false } = {}) {
     if (!('transferControlToOffscreen' in HTMLCanvasElement.prototype))
         return;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Worker of watchdog.js. When the page's main thread hangs, the worker draws a warning over the page and tells the keeper (a frame in
-// another process) to reload a wall. Messages from the page: first { veil, band (canvases), words, keeper }; later { width, height, scale }
-// of the band; 'beat' at intervals while the page runs; 'rest' when the page is hidden, because timers are then slow.
+// Worker of watchdog.js. When the page's main thread hangs, the worker draws a warning over the page. If the page is on a video
+// wall, the worker also tells the keeper (a frame in another process) to reload the page. Messages from the page: first { veil,
+// band (canvases), words, keeper }; later { width, height, scale } of the band; 'beat' at intervals while the page runs; 'rest'
+// when the page is hidden, because timers are then slow.
 'use strict';
 
 // Silence is counted in ticks and not by a clock, because neither this worker nor the page runs while the machine sleeps. The warning is

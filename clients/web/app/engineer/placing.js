@@ -222,7 +222,7 @@ export class Placing {
 
     showDiff({ file, conflict, hash, lines, more }) {
         if (hash !== null && hash === this.confirmed)
-            return; // the user has confirmed this difference between the tag lists, and the list is being saved: does not ask again
+            return; // the user has already confirmed these changes to the tag list, and the list is being saved: does not ask again
         this.stopSaving();
         const close = () => this.dialog.close();
         const change = ([number, before, after]) => make('div', { class: 'change' }, make('span', {}, say('eng.diff.line', { n: number })),

@@ -19,7 +19,8 @@ const MOST_COVERED = 9; // number of cameras to compare if the tag's own asset h
 // MOST_WALLS: maximum number of walls past which the eye moves towards a tag, one after the other. CLEAR: the eye moves to this
 // fraction of the last wall's distance from the tag, so that it is just past that wall.
 const MOST_WALLS = 6, CLEAR = 0.95;
-// A camera in the tag's room needs at least this fraction of the outside camera's distance from the tag free of obstacles.
+// A camera moved into the tag's room is accepted only if its free way towards the tag is at least this fraction of the distance
+// from which the camera outside looked at the tag.
 const ROOMY = 0.4;
 
 const has = (list, id) => (list ?? []).includes(id);
@@ -70,12 +71,12 @@ export class Approach {
         this.setGhosts([]);
         this.reveal(asset);
         const { camera: now, model, params } = this.session, { width } = halfAt(params, this.viewport.width, 0);
-        // id of the asset that the eye must not enter; null: the tag's asset is a room
+        // id of the tag's asset, which the eye must not enter; null: the asset is a room, which it may enter
         const solid = isRoom(asset, model.assets) ? null : asset.id;
         const cameras = approaches({ camera: now, point: tag.position, box: asset.bounds, aspect: width / this.viewport.height,
             whole: model.plant.bounds, solid: solid !== null });
         fly(cameras[0]);
-        const behind = [], own = []; // cameras whose view of the tag is blocked: by another asset; by the tag's own asset
+        const behind = [], own = []; // cameras whose view of the tag is blocked. behind: by another asset; own: by the tag's own asset
         // deadline, after which the best view found so far is used, for example on a slow network
         const latest = performance.now() + SEARCH_MS;
         let best = null, least = Infinity;

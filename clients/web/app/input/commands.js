@@ -14,8 +14,8 @@ const REACH_PX = { mouse: 14, pen: 18, touch: 26 };
 const HELD_US = 3.5e6;      // age in microseconds up to which a shown instant counts as the present
 
 // Returns the tags of the shown group from which the page can show distances along the surface: tags with a position, on an
-// asset whose distances plantcast-prep has computed. For a sensor that is alone on its asset it has not computed them if the
-// group has `singles: whole`.
+// asset whose distances plantcast-prep has computed. If the group has `singles: whole` (a single sensor colours its whole
+// asset), there are no distances on assets with one sensor of the group.
 export function sensorsOf({ model, params }) {
     const all = model.tags.filter(({ group, asset, position }) => group === params.group && asset && position);
     if (model.group(params.group)?.singles !== 'whole')

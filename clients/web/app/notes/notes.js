@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shift notes: pins in the picture, also on walls, and a list and a form in the panel of views. On a wall, also shows where a
-// user at another computer (a desk) points.
+// Shift notes: pins in the picture, also on video walls, and a list and a form in the panel of views. On a video wall, also
+// shows where a user at another computer (a desk) points.
 import { projector } from '../../core/camera.js';
 import { ask } from '../../core/history.js';
 import { meets } from '../../core/labels.js';
@@ -16,8 +16,8 @@ const UNTIL = ['shift', 'day', 'week', 'ever'], HOURS = { shift: 8, day: 24, wee
 const MAY = ['operator', 'engineer'], POINTS_MS = 4000, TICK_MS = 500, LONGEST = 130;
 const RING = 13, MARK = 6; // radii in CSS pixels of an alarm ring including its outlines, and of other markers; larger on a video wall
 
-// Makes a pin's stem, the line from the pin to its point, below everything else over the picture: labels and other pins cover
-// it.
+// Makes a pin's stem, the line from the pin to its point. The stem is drawn below all other markers over the picture, so labels
+// and other pins cover it.
 function makeStem(kind = '') {
     const stem = make('i', { class: `note-stem ${kind}`, hidden: true });
     byId('picture').after(stem);
@@ -35,7 +35,8 @@ export class Notes {
     constructor({ session, selection, viewport, overlay, modules, hangs, tell, flyToTag, selectAsset }) {
         Object.assign(this, { session, selection, viewport, overlay, modules, hangs, flyToTag, selectAsset });
         this.pins = new Map(); // pins of notes: id -> { element, stem, position }
-        // on a wall: mark where a user at another computer points: { element, stem, position, until }; null: nobody points
+        // on a video wall: mark where a user at another computer points: { element, stem, position, until }; null: nobody
+        // points
         this.pointer = null;
         this.list = make('ul', { id: 'notes-list' });
         this.ofPlant = make('ul', { id: 'plant-notes', hidden: true }); // list over the picture with the notes about the whole plant

@@ -35,8 +35,9 @@ export class Split {
         this.session.setParams({ split: params.split ? null : this.first() });
     }
 
-    // Returns what the right half shows first: the sensor group shown before, else the next group. If that is the left half's
-    // group, the right half shows its alarm limits, or its values if the left half shows the limits.
+    // Returns what the right half shows when the split begins: the sensor group shown before the present one, else the next
+    // group in the list. If that is the left half's group, the right half shows that group's alarm limits, or its values if the
+    // left half shows the limits.
     first() {
         const { model, params } = this.session, { groups } = model, now = groups.findIndex(({ id }) => id === params.group);
         const last = model.group(this.last)?.id ?? groups[(now + 1) % groups.length].id;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shows the page on a control room's wall: enlarged, without controls, and with the screen kept on.
+// Shows the page on a control room's video wall: enlarged, without controls, and with the screen kept on.
 import { learnWords, say } from '../../core/words.js';
 import { numberText } from '../../core/format.js';
 import { legendsLie, readWall, SPREAD_MS, wallFit } from '../../core/wall.js';
@@ -11,9 +11,9 @@ const FAR_MS = 60000; // milliseconds for which the page tells the installer fro
 const LEAST_PICTURE = 0.3;
 const TIGHT = 620; // width of the display, in units of page.unit, below which the date has no room next to the time
 
-// Sets page.unit (size of the page's unit) and calls page.onUnit() when it changes. Sets page.lying, with a media query's
-// interface: whether legends lie horizontally. Legends and the note on simulated values have space of their own, so that they
-// cover no reading.
+// Shows the page on a video wall. Sets page.unit (factor by which the page is enlarged) and calls page.onUnit() when it
+// changes. Sets page.lying, used like a media query: page.lying.matches says whether legends lie below the picture instead of
+// standing at its side. Legends and the note on simulated values have space of their own, so that they cover no reading.
 export async function hangOnWall(search, page) {
     const pane = new URLSearchParams(search).get('pane'), wall = readWall(search);
     const hear = [], legends = make('div', { class: 'legends' }), { classList } = byId('viewport');
