@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Encoding of the demo plant at 1920x1080, printed as one JSON line per row: time and size of moving frames; size of changes
-   with a still camera when 60 tags change together once per second; and decoding of both with the command line's decoders. */
+/* Measures encoding and decoding of pictures of the demo plant at 1920x1080; prints one JSON line per quantity. Time and size
+   of frames of a moving camera; size of frames of a still camera when 60 tags change once per second; and processor time to
+   decode both with the command line's decoders. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

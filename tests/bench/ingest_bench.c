@@ -32,8 +32,8 @@ static struct plant *make_plant(const struct modbus_device *devices)
     return plant;
 }
 
-/* Returns the age in milliseconds of a device's oldest value at each check. Adds to *wrong the number of values that are not
-   Good or differ from the device's. */
+/* Returns the age in milliseconds of the oldest reading of a device in the snapshot. Adds to *wrong the number of its readings
+   that are not Good or differ from the device's values. */
 static double oldest_ms(const struct snapshot *snapshot, int device, long *wrong)
 {
     double oldest = 0;

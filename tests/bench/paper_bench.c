@@ -36,7 +36,7 @@ static const double LONGEST_BRUTE_MS = 20e3;
 static const double SWING_RAD = 6 * M_PI / 180, FOV_DEG = 15, WANTED_COVERAGE = 0.6;
 
 struct paper_model {
-    const char *path, *nodes, *up, *suffix; /* suffix: ending of the names of the printed rows */
+    const char *path, *nodes, *up, *suffix; /* ending of the names of the printed rows, such as "_5parts" */
     const char *keys;                       /* keys of the group in the plant file: interpolation and distance; NULL: defaults */
 };
 static const struct paper_model models[] = {
@@ -74,7 +74,8 @@ struct timing_series { /* measured times of one row */
 
 /* --- cameras with the whole scene in view --------------------------------------------------------------------------------- */
 
-/* Finds the model's outermost points in many directions, in the plant frame without the instance's offset. */
+/* Finds the outermost point of the model in each of HULL_POINTS directions, in the plant's axes but without the offset of an
+   instance. */
 static void find_hull(struct paper_bench *bench)
 {
     const struct scene_asset *asset = &bench->crowd.scene->assets[0];

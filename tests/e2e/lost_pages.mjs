@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tests of the page in one browser while something is missing: one of the page's own parts, its server, or the plant's values.
 import { describe } from 'node:test';
-import './support/browser.mjs'; // imported here, so that the browser ends with the program and not with the first group of tests
+// imported by this file, so that the browser is closed after the last group of tests and not after the first
+import './support/browser.mjs';
 
 describe('lost_pages', { concurrency: 2 }, () => {
     for (const subject of ['weight', 'first_light', 'truth', 'proxy'])

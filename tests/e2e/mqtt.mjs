@@ -126,7 +126,8 @@ test('JSON values are read by path, with the time and quality in the payload', o
     assert.ok((await until('TI-2', { ...good, value: 21 })).age_ms <= Date.now() - began + 1);
 });
 
-// Kepware's IoT Gateway publishes an array of the tags that changed, in any order.
+// Messages as those of Kepware's IoT Gateway: an array with the tags that have changed, in any order. A tag must never get the
+// value of another one.
 test('a gateway that publishes only changes: no tag gets another\'s value', options, async () => {
     const paths = { A2: 'values[1].v', A3: 'values[2].v', F1: "values[?@.id=='G.A1'].v", F2: "$.values[?id=='G.A2'].v",
         F9: "values[?id=='G.A9'].v" };

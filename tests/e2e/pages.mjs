@@ -2,7 +2,8 @@
 // Short tests of the page, each with its own plant, in one browser, because starting a browser costs more than most of these
 // tests.
 import { describe } from 'node:test';
-import './support/browser.mjs'; // imported here, so that the browser ends with the program and not with the first group of tests
+// imported by this file, so that the browser is closed after the last group of tests and not after the first
+import './support/browser.mjs';
 
 describe('pages', { concurrency: 2 }, () => {
     for (const subject of ['tour', 'start', 'clip_gizmo', 'roles', 'named_views', 'arrows', 'crowd', 'drift', 'singles', 'handover',

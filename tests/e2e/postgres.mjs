@@ -86,7 +86,7 @@ async function assertSame(from) {
     const lacks = (all, of) => [...all.keys()].filter((key) => !of.has(key));
     const keyed = (rows) => new Map(rows.map(([tag, us, value, quality]) => [`${tag} ${us} ${quality}`, value]));
     let api, sql, here, there;
-    const isSame = async () => { // repeats the comparison, because the database and the files are written at different times
+    const isSame = async () => { // compared repeatedly, because the database and the history files are written at different times
         api = [];
         for (const tag of TAGS) {
             const url = `http://127.0.0.1:${plant.port}/api/v1/history?tags=${tag}&from=${from / 1e6}&to=${to / 1e6}&points=20000`;

@@ -26,7 +26,7 @@ after(async () => {
     await plant?.destroy();
 });
 
-// Returns how often per second the event loop's thread went to sleep.
+// Returns how often per second the daemon's main thread (event loop) went to sleep, measured for this many seconds.
 async function sleeps(seconds) {
     const { pid } = plant.daemon.child;
     const count = () => Number(readFileSync(`/proc/${pid}/task/${pid}/status`, 'utf8').match(/^voluntary_ctxt_switches:\s*(\d+)/m)[1]);

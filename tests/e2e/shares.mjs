@@ -136,7 +136,8 @@ test('behind a proxy, connections count for the address that the proxy names', o
         assert.equal(proxied.prepare().code, 0);
         await proxied.startDaemon('--behind-proxy', '--host', 'plant.example', '--open-viewers', '--limit', 'connections=200');
         const head = (from) => `GET /healthz HTTP/1.1\r\nHost: plant.example\r\nX-Forwarded-For: ${from}\r\n\r\n`;
-        // Resolves with the status of a request on a connection that is kept open.
+        // Sends a request on a new connection that stays open afterwards, from the client address that the proxy header names.
+        // Resolves with its status and socket.
         const keep = (from) => new Promise((done) => {
             const socket = connect(proxied.port, '127.0.0.1', () => socket.write(head(from)));
             socket.once('data', (bytes) => done({ socket, status: Number(bytes.toString().split(' ')[1]) }));

@@ -62,7 +62,8 @@ static bool opens(const char *file, int flags)
     return good;
 }
 
-/* Returns whether a file opened only for reading can be truncated. Uses its own file, so that nothing is lost. */
+/* Returns whether the process can truncate a file that it opens only for reading (O_RDONLY | O_TRUNC). Tries it on a file of
+   its own, so that no data is lost. */
 static bool empties(void)
 {
     int fd = open("emptied", O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
@@ -163,7 +164,8 @@ static void try_process(void)
     if (attached)
         ptrace(PTRACE_DETACH, pid, NULL, NULL);
     result("take-descriptor", takes_a_descriptor());
-    result("kill", kill(pid, SIGURG) == 0); /* SIGURG is ignored by default, so it does no harm */
+    /* the default action for SIGURG is to ignore it, so the attempt does no harm if it succeeds */
+    result("kill", kill(pid, SIGURG) == 0);
     result("kill-probe", kill(pid, 0) == 0);
     result("tgkill", syscall(SYS_tgkill, pid, pid, SIGURG) == 0);
     result("tkill", syscall(SYS_tkill, pid, SIGURG) == 0);
@@ -213,7 +215,8 @@ static void try_network(void)
 
 /* --- the kernel -------------------------------------------------------------------------------------------------------------- */
 
-/* Runs an attempt that changes the process in a forked child. If fork fails, the attempt runs in this process. */
+/* Runs an attempt in a forked child, because it changes the state of its process. If fork fails, the attempt runs in this
+   process. */
 static void in_copy(const char *name, bool (*attempt)(void))
 {
     int status = 0;
@@ -277,7 +280,7 @@ static void on_fault(int number)
 static bool calls_as_32_bit(void)
 {
 #ifdef __x86_64__
-    long answer = 20; /* number of the system call getpid */
+    long answer = 20; /* 20 is the number of the system call getpid for 32-bit programs */
     signal(SIGSEGV, on_fault);
     if (sigsetjmp(back, 1) != 0)
         errno = ENOSYS;
@@ -314,7 +317,8 @@ static void try_kernel(void)
     in_copy("chroot", changes_root);
     in_copy("other-user", changes_user);
     in_copy("regain-ptrace", regains_capabilities);
-    result("program-for-the-loader", opens("/bin/true", O_RDONLY)); /* ld.so may run; it maps any program that it can read */
+    /* the dynamic loader (ld.so) may run, and it can map any program that may be read */
+    result("program-for-the-loader", opens("/bin/true", O_RDONLY));
     in_copy("call-as-32-bit", calls_as_32_bit);
     pid_t copy = fork();
     if (copy == 0)
@@ -400,13 +404,13 @@ static void try_all(void)
 static bool preloaded;
 static atomic_bool begun;
 
-/* Child processes get a filtered environment, so the targets are read at load time. */
+/* Reads the targets when the library is loaded, because child processes get a filtered environment. */
 __attribute__((constructor)) static void begin(void)
 {
     preloaded = take_targets(getenv("PLANTCAST_TARGETS"));
 }
 
-/* Returns whether the program is confined: the readers' filter refuses this harmless system call. */
+/* Returns whether the program is already confined: the system call filter of the file readers refuses this harmless call. */
 static bool is_confined(void)
 {
     return prctl(PR_GET_SECCOMP, 0, 0, 0, 0) < 0 && errno == EPERM;

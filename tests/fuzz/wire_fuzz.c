@@ -26,7 +26,9 @@ static void read_then_write(const uint8_t *bytes, size_t count)
 {
     struct wire_frame frame;
     uint8_t again[WIRE_FRAME_HEADER_BYTES];
-    enum { RESERVED = 108 }; /* height_m is ignored for perspective cameras: any value may be read, and 0 is written */
+    /* compares only the bytes before height_m if the camera is a perspective one: the reader ignores height_m then, and the
+       writer writes 0 */
+    enum { RESERVED = 108 };
     if (!wire_get_frame(bytes, count, &frame))
         return;
     check_sound(&frame, count);
@@ -34,7 +36,8 @@ static void read_then_write(const uint8_t *bytes, size_t count)
     require(!memcmp(bytes, again, frame.fov_deg == 0 ? sizeof(again) : RESERVED), "read and written it is the same");
 }
 
-/* Uses the bytes as the struct itself, even if the values make no sense. */
+/* Copies the random bytes into the header struct itself, so that members have nonsensical values, writes the header and reads
+   it back. */
 static void write_then_read(const uint8_t *bytes, size_t count)
 {
     struct wire_frame frame = { 0 }, again;

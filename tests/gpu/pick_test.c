@@ -43,7 +43,7 @@ struct pick_tally {
     double worst_value, worst_px, worst_sum, longest_ms;
 };
 
-/* Returns Shepard's sum at the picked point in double precision, from the distances at its triangle's corners. */
+/* Returns the value at the picked point by Shepard's formula in double precision, from the distances that the pick reports. */
 static double slow_value(const struct pick_case *site, const struct view *view, const struct pick *pick)
 {
     double numerator = 0, denominator = 0;
@@ -71,8 +71,8 @@ static double project(const struct view *view, const struct pick_case *site, con
     return 0.5 - 0.5 * clip[2] / clip[3];
 }
 
-/* Returns the measured value of whichever pixel, this one or a neighbour, is closest in depth to the pick: at silhouettes a
-   pixel may fall to either side. */
+/* Returns the measured value of the pixel or of that neighbour whose depth is closest to the pick's depth, because at a
+   silhouette the renderer may assign a point to the pixel next to it. */
 static const float *same_place(const float (*measured)[4], int x, int y, double depth)
 {
     const float *best = measured[y * WIDTH_PX + x];
@@ -100,7 +100,7 @@ static void compare_pixel(struct pick_case *site, const struct view *view, const
         tally->differ += centre[1] > MEASURE_NOTHING;
         return;
     }
-    if (pick.inside) { /* a pick on a section cap has no measured value to compare with */
+    if (pick.inside) { /* picks on a section cap (filled cut face) have no value, so there is nothing to compare */
         tally->inside++;
         assert_true(pick.state == PICK_CONTEXT && isnan(pick.value));
         return;
@@ -129,7 +129,9 @@ static void compare_pixel(struct pick_case *site, const struct view *view, const
         tally->marked_right += marked && error <= 1.0 / 255;
         tally->worst_value = fmax(tally->worst_value, marked ? 0 : error);
         tally->over += !marked && error > 1.0 / 255;
-        if (pick.nearest_count < PICK_NEAREST) /* with more sensors in reach, the pick reports only the nearest */
+        /* with PICK_NEAREST or more sensors within reach, the pick reports only the nearest ones, and their sum would be
+           incomplete */
+        if (pick.nearest_count < PICK_NEAREST)
             tally->worst_sum = fmax(tally->worst_sum, fabs(slow_value(site, view, &pick) - pick.value) / range);
     }
 }
@@ -195,7 +197,8 @@ TEST(test_small_plant)
         compare_view(&site, &view, 3000, &tally);
         assert_exact(&tally);
         assert_true(way < 8 || tally.inside > 50);
-        assert_true(tally.worst_sum < 1.0 / 255); /* picks are computed from distances, not interpolated from the triangle */
+        /* a pick's value is computed from the distances at that point, not interpolated between the triangle's corners */
+        assert_true(tally.worst_sum < 1.0 / 255);
     }
     stand_finish(&stand);
 }
@@ -250,7 +253,7 @@ TEST(test_sensors)
     for (size_t i = 0; i < frame->marker_count; i++) {
         const struct frame_marker *marker = &frame->markers[i];
         pick_at(site.scene, site.field, &view, site.snapshot, (double)marker->x_px, (double)marker->y_px, &pick);
-        if (pick.sensor != marker->tag) /* another sensor is in front of this one */
+        if (pick.sensor != marker->tag) /* the pick hit the marker of another sensor in front of this one */
             continue;
         assert_int_equal(pick.sensor_occluded, marker->occluded);
         if (marker->occluded)
@@ -273,7 +276,7 @@ TEST(test_sensors)
     stand_finish(&stand);
 }
 
-/* In a split view each half answers its own picks. */
+/* In a split view, a pick must use the view of the half in which it lies. */
 TEST(test_split_view)
 {
     struct stand stand;

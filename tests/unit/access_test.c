@@ -11,7 +11,7 @@
 
 #define HELLO_WITH(params) "{\"type\":\"hello\",\"width\":64,\"height\":64,\"codecs\":[\"png\"],\"params\":{\"seq\":1," params "}}"
 
-/* Asserts that the role `least` may send this message, and that the next lower role may not. */
+/* Asserts that every role from `least` upwards may send this message, and that lower roles may not. */
 static void expect_least(const char *text, enum role least)
 {
     struct message message;
@@ -87,7 +87,7 @@ TEST(where_a_daemon_may_listen)
     params.tokens_path = "tokens";
     assert_false(access_allowed_at(&params, false, &why));
     params.tls_cert_path = "cert";
-    assert_false(access_allowed_at(&params, true, &why)); /* a certificate without a key is no TLS */
+    assert_false(access_allowed_at(&params, true, &why)); /* refused: a certificate without a key does not count as TLS */
     params.tls_key_path = "key";
     assert_true(access_allowed_at(&params, false, &why));
     params.tokens_path = NULL;
@@ -97,11 +97,12 @@ TEST(where_a_daemon_may_listen)
     params = (struct access_params){ .behind_proxy = true };
     assert_false(access_allowed_at(&params, true, &why));
     params.tokens_path = "tokens";
-    /* refused: behind a proxy, the host names that serve the pages must be listed, and the list is still empty */
+    /* refused: behind a proxy, the plant must list the host names under which its pages are served, and host_count is still 0
+       */
     assert_false(access_allowed_at(&params, true, &why));
     params.host_count = 1;
     assert_true(access_allowed_at(&params, true, &why));
-    /* refused, because credentials from the proxy would cross the network unencrypted */
+    /* refused: not on the loopback address, so the proxy's requests, with credentials, would cross the network unencrypted */
     assert_false(access_allowed_at(&params, false, &why));
 }
 
@@ -135,11 +136,12 @@ TEST(hosts_are_names_without_ports)
 TEST(pages_of_other_hosts_may_not)
 {
     struct access_params params = { .origins = { "https://portal.example" }, .origin_count = 1 };
-    assert_true(access_origin(&params, "", "plant.example", true)); /* a request without an origin does not come from a browser */
+    /* accepted: a request without an Origin header does not come from a browser */
+    assert_true(access_origin(&params, "", "plant.example", true));
     assert_true(access_origin(&params, "http://plant.example:8080", "plant.example:8080", false));
     assert_true(access_origin(&params, "https://plant.example", "plant.example", true));
     assert_true(access_origin(&params, "https://portal.example", "plant.example", true));
-    /* over plain http anybody on the network could change the page */
+    /* refused: the page came over plain http, so anybody on the network could have changed it */
     assert_false(access_origin(&params, "http://plant.example", "plant.example", true));
     assert_false(access_origin(&params, "http://plant.example:81", "plant.example", false));
     assert_false(access_origin(&params, "https://portal.example.evil.example", "plant.example", false));
@@ -180,15 +182,17 @@ TEST(a_forwarded_address_is_the_one_that_a_proxy_appended)
                   { "203.0.113.7:1234", "203.0.113.7" },
                   { "unknown, [2001:db8::1]:99", "2001:db8::1" },
                   { "2001:db8::1", "2001:db8::1" },
-                  /* the request passed two trusted proxies, 203.0.113.7 is the client */
+                  /* 203.0.113.7 is the client: the two entries after it are trusted proxies */
                   { "198.51.100.1, 203.0.113.7, 10.0.0.10", "203.0.113.7" },
                   { "198.51.100.1, 203.0.113.7, fd00:1::7, 10.0.0.10", "203.0.113.7" },
-                  /* "unknown" ends the chain of trusted proxies: addresses before it may be forged */
+                  /* "unknown" before the last trusted proxy: the addresses before it may be forged, so that proxy counts as the
+                     client */
                   { "198.51.100.1, unknown, 10.0.0.10", "10.0.0.10" },
-                  /* all addresses are trusted proxies, so the first is the client, a program on a proxy's machine */
+                  /* all entries are trusted proxies, so the first is the client: a program that runs on a proxy's machine */
                   { "10.0.0.11, 10.0.0.10", "10.0.0.11" },
                   { "10.0.0.10", "10.0.0.10" },
-                  /* our proxy adds only the last entry; "unknown" is no address, so the client's address is not known */
+                  /* the trusted proxy has added only the last entry, which is no address, so the client's address is not known
+                     (NULL) */
                   { "203.0.113.7, unknown", NULL },
                   { "203.0.113.7, 1.2.3.4.5.6.7.8.9.0.1.2.3.4.5.6.7.8.9.0.1.2.3.4.5.6.7.8.9.0.1.2.3.4.5.6.7.8", NULL },
                   { "", NULL } };
@@ -225,7 +229,8 @@ TEST(only_the_named_networks_are_proxies)
         if (access_is_proxy(&params, others[i]))
             fail_msg("a proxy: %s", others[i]);
     assert_false(params.behind_proxy);
-    /* a proxy on this machine: from now on, local requests may carry anybody's traffic and are not trusted */
+    /* adds a proxy on this machine: from then on, local requests may come from anybody through the proxy, so they are no longer
+       trusted */
     assert_true(access_add_proxy(&params, "127.0.0.1") && params.behind_proxy);
     while (params.proxy_count < ACCESS_MAX_NAMES)
         assert_true(access_add_proxy(&params, "10.0.0.10"));

@@ -16,7 +16,7 @@
 #include "tests/support/sleep.h"
 #include "value/quality.h"
 
-struct alarm_message_setup { /* a plant of two tags with limits H 80 and HH 90 */
+struct alarm_message_setup { /* fixture: a plant of two tags with alarm limits H 80 and HH 90, its store and its alarm service */
     struct plant *plant;
     struct store *store;
     struct alarm_service *alarm_service;
@@ -92,7 +92,7 @@ CASE(sessions_hear_what_changed)
     assert_true(json_is_true(json_object_get(all, "all")));
     assert_int_equal(json_array_size(json_object_get(all, "alarms")), 2);
     assert_string_equal(state_of(all, "HH"), "unacknowledged");
-    /* another session requests the same alarms: the text written for the first session is reused */
+    /* a second session requests the same alarms and must get the text that was written for the first one */
     parse(alarms_text(&said, s->alarm_service, s->plant, 5000, &other));
     assert_int_equal(number, other);
     give(s, 0, 85, QUALITY_GOOD);
@@ -126,7 +126,7 @@ CASE(what_is_asked_is_done_or_refused)
     mem_free(text);
 }
 
-/* A device alarm covers both tags: it appears once, under the device's name. */
+/* The device of both tags is lost. The alarm must appear once, under the device's name, and not for each tag. */
 CASE(a_device_has_its_own)
 {
     struct message message;
@@ -146,7 +146,8 @@ CASE(a_device_has_its_own)
     assert_true(ask(s, "{\"type\":\"alarm\",\"seq\":1,\"action\":\"acknowledge\",\"alarms\":[[\"plc\",\"LINK\"],[\"TT-1\",\"BAD\"]]}",
                     &message, &error));
     json_t *answer = parse(alarm_do(s->alarm_service, s->plant, &message, "local"));
-    /* only one acknowledgement takes effect: the tag's own alarm is part of the device's alarm and cannot be acknowledged */
+    /* one of the two requested acknowledgements takes effect: the device's; the tag's alarm is part of the device's alarm and
+       cannot be acknowledged */
     assert_int_equal(json_integer_value(json_object_get(answer, "done")), 1);
     assert_false(ask(s, "{\"type\":\"alarm\",\"seq\":2,\"action\":\"acknowledge\",\"alarms\":[[\"TT-1\",\"LINK\"]]}", &message, &error));
     assert_non_null(strstr(error.text, "this plant has no device “TT-1”"));
@@ -233,7 +234,8 @@ CASE(the_journal_is_read_by_pages)
     text_finish(&out);
 }
 
-/* Restarts the alarm service after a change of the first tag's limit and unit; NULL keeps the unit. */
+/* Restarts the alarm service after a change of the plant: the first tag gets this unit and limit H. unit NULL: the plant is
+   unchanged. */
 static void restart_in(struct alarm_message_setup *s, const char *unit, double limit)
 {
     alarm_service_stop(&s->alarm_service);
@@ -246,7 +248,7 @@ static void restart_in(struct alarm_message_setup *s, const char *unit, double l
         .log = s->log, .counters = test_counters(), .plant = s->plant, .store = s->store, .folder = s->folder, .keep_days = 400 });
 }
 
-/* Asserts the limit and unit in the journal's oldest row, and the value at which the current alarm H was raised. */
+/* Asserts that the oldest row of the journal has this limit and unit, and that the current alarm H was raised at this value. */
 static void expect_row(struct alarm_message_setup *s, double limit, const char *unit, double value)
 {
     struct alarm_query q;
@@ -268,7 +270,7 @@ static void expect_row(struct alarm_message_setup *s, double limit, const char *
     assert_true(isnan(value) ? json_is_null(raised) : fabs(json_number_value(raised) - value) < 1e-3);
 }
 
-/* Makes the journal a file of version 1, which has no units. */
+/* Changes the journal's file to that of version 1, which does not store units. */
 static void make_older(struct alarm_message_setup *s)
 {
     sqlite3 *db;
@@ -282,7 +284,8 @@ static void make_older(struct alarm_message_setup *s)
     sqlite3_close(db);
 }
 
-/* The unit of a tag changes: old journal rows are converted or keep their unit, and an old value never appears with the new unit. */
+/* After a tag's unit has changed, old rows of the journal must be converted to the new unit or keep their own. A value must
+   never appear with the wrong unit. */
 CASE(the_journal_keeps_the_unit_of_the_time)
 {
     s->plant->tags[0].alarms.limits[LIMIT_HH] = NAN;
@@ -298,13 +301,13 @@ CASE(the_journal_keeps_the_unit_of_the_time)
     make_older(s);
     restart_in(s, NULL, 0);
     expect_row(s, 80, NULL, NAN);
-    give(s, 0, 70, QUALITY_GOOD); /* this change of the alarm makes the service add the column for units to the journal file */
+    give(s, 0, 70, QUALITY_GOOD); /* the first change of an alarm after that: the service must add the column for units to the old file */
     give(s, 0, 96, QUALITY_GOOD);
     restart_in(s, NULL, 0);
     expect_row(s, 80, NULL, 96);
 }
 
-/* Counters and totalizers have more digits than a transmitter; pages, programs and files must not round them. */
+/* Readings of counters and totalizers have many digits, which pages, the API and files must not round. */
 CASE(large_readings_keep_their_digits)
 {
     static const struct {

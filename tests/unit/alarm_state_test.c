@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Alarm states: a table gives the next state for every state and event; also limits, deadbands and delays. */
+/* States of alarms: a table gives the expected next state for every state and event. Also tests limits, deadbands and delays.
+   */
 #include "tests/support/test.h"
 
 #include "alarm/alarm_state.h"
@@ -9,8 +10,8 @@
 
 /* --- the table -------------------------------------------------------------------------------------------------------------- */
 
-/* Names of the states of a local alarm: the status, "+a" if the cause is active although the status does not show it, "+l" if
-   latched, and any further reasons why the alarm is set aside. */
+/* Short names of the states of a local alarm: the status; "+a": the cause is active although the status does not show it; "+l":
+   the alarm is latched; then further reasons why the alarm is set aside. */
 static const struct {
     const char *name, *word;
     struct alarm_state state;
@@ -37,7 +38,8 @@ static const struct {
 };
 enum { STATE_COUNT = sizeof(states) / sizeof(states[0]), ROWS = 18 };
 
-/* Transition table of an alarm that does not latch. Columns follow enum alarm_event. "=": no change; "-": the event is refused. */
+/* Expected transitions of an alarm that does not latch. Each row begins with a state, followed by the next state for each event
+   in the order of enum alarm_event. "=": no change; "-": the event is refused. */
 static const char *const table[ROWS][1 + ALARM_EVENTS] = {
     /* columns: from state; raise, clear, acknowledge, reset, shelve, unshelve, suppress, unsuppress, take out of service, return to
        service, carry, call */
@@ -82,7 +84,7 @@ TEST(every_event_leads_where_the_table_says)
             struct alarm_state reached = states[from].state;
             enum alarm_outcome outcome = alarm_state_step(&reached, &rule, (enum alarm_event)event);
             if (!wanted)
-                continue; /* the next state is a combination that has no name here; check_invariants() still covers it */
+                continue; /* no expectation: the next state has no short name, but check_invariants() tests it as well */
             said++;
             enum alarm_outcome meant = !strcmp(wanted, "=") ? ALARM_AS_IT_WAS : !strcmp(wanted, "-") ? ALARM_REFUSED : ALARM_CHANGED;
             int to = meant == ALARM_CHANGED ? find_state(wanted) : from;
@@ -104,7 +106,8 @@ TEST(every_state_has_its_word)
     assert_int_equal(alarm_kind_find("XX"), ALARM_NONE);
 }
 
-/* Checks what must hold in every reachable state under any rule. */
+/* Asserts what must hold in every state that can be reached, whatever rule (which events latch, which can be acknowledged)
+   applies. */
 static void check_invariants(const struct alarm_state *state, const struct alarm_rule *rule)
 {
     enum alarm_status word = alarm_state_status(state, rule);
@@ -115,7 +118,7 @@ static void check_invariants(const struct alarm_state *state, const struct alarm
     assert_false(word == ALARM_NORMAL && state->active);
     assert_false(rule->forgets && !state->active && state->unacknowledged);
     if (rule->latches && rule->acknowledges && state->active && !state->aside)
-        assert_true(state->latched); /* a latched alarm stays visible until somebody resets it */
+        assert_true(state->latched); /* the alarm must stay latched, and so visible, until somebody resets it */
 }
 
 TEST(no_sequence_breaks_what_must_hold)
@@ -139,19 +142,21 @@ TEST(no_sequence_breaks_what_must_hold)
 
 TEST(a_deadband_lies_inside_its_limit)
 {
-    assert_int_equal(condition_side(ALARM_H, 85, 2, 85), CONDITION_BEYOND); /* a value equal to the limit is beyond it */
+    assert_int_equal(condition_side(ALARM_H, 85, 2, 85), CONDITION_BEYOND); /* a value that equals the limit counts as beyond it */
     assert_int_equal(condition_side(ALARM_H, 85, 2, 83), CONDITION_BETWEEN);
     assert_int_equal(condition_side(ALARM_H, 85, 2, 82.999), CONDITION_CLEAR);
     assert_int_equal(condition_side(ALARM_HH, 85, 0, 84.999), CONDITION_CLEAR);
-    assert_int_equal(condition_side(ALARM_L, 0, 1, 0), CONDITION_BEYOND); /* zero is a valid limit and a valid reading */
+    assert_int_equal(condition_side(ALARM_L, 0, 1, 0), CONDITION_BEYOND); /* 0 must work both as a limit and as a reading */
     assert_int_equal(condition_side(ALARM_L, 0, 1, 1), CONDITION_BETWEEN);
     assert_int_equal(condition_side(ALARM_LL, 0, 1, 1.001), CONDITION_CLEAR);
     assert_int_equal(condition_side(ALARM_LL, -5, 0, -4.999), CONDITION_CLEAR);
-    /* equals the limit in the device but not as a double: a 32-bit float, and a scaled count */
+    /* values that equal the limit in the device, but not as a double: one is stored as a 32-bit float, the other is a count
+       times a factor */
     assert_int_equal(condition_side(ALARM_H, 0.7, 0, (double)0.7F), CONDITION_BEYOND);
     assert_int_equal(condition_side(ALARM_L, 55.5, 0, 0.555 * 100), CONDITION_BEYOND);
     assert_int_equal(condition_side(ALARM_H, 0.7, 0, 0.699999), CONDITION_CLEAR);
-    /* a limit of 60 °F, a deadband of 10 °F and a value of 50 °F, all converted to °C */
+    /* limit 60 °F, deadband 10 °F and value 50 °F: in °C the value must also count as exactly at the end of the deadband,
+       despite rounding */
     const double factor = 5 / 9.0, offset = 459.67 * 5 / 9 - 273.15;
     assert_int_equal(condition_side(ALARM_H, 60 * factor + offset, 10 * factor, 50 * factor + offset), CONDITION_BETWEEN);
 }
@@ -163,12 +168,14 @@ TEST(delays_run_whole)
     int64_t at = 0;
     assert_false(condition_put(&c, &delays, CONDITION_BEYOND, 10 * S));
     assert_false(condition_advance(&c, &delays, 13 * S - 1, &at));
-    condition_put(&c, &delays, CONDITION_BETWEEN, 13 * S - 1); /* back below the limit: the delay starts again from zero */
+    /* the value returns into the deadband before the delay is over, so the delay must start again from zero */
+    condition_put(&c, &delays, CONDITION_BETWEEN, 13 * S - 1);
     assert_false(condition_advance(&c, &delays, 20 * S, &at));
     assert_false(condition_put(&c, &delays, CONDITION_BEYOND, 20 * S));
     assert_false(condition_put(&c, &delays, CONDITION_BEYOND, 22 * S));
     assert_true(condition_advance(&c, &delays, 99 * S, &at));
-    assert_true(c.active && at == 23 * S); /* the alarm's time is when the delay ended, not when the condition was polled */
+    /* the alarm is dated 23 s, when the delay ended, although the condition was evaluated at 99 s */
+    assert_true(c.active && at == 23 * S);
     assert_false(condition_put(&c, &delays, CONDITION_CLEAR, 100 * S));
     condition_hold(&c);
     assert_false(condition_advance(&c, &delays, 200 * S, &at)); /* nothing is known: nothing goes */
@@ -182,7 +189,8 @@ static bool turns(int side, bool active)
     return side == (active ? CONDITION_CLEAR : CONDITION_BEYOND);
 }
 
-/* Slow reference: for each second, looks back to find for how many seconds the condition has held. */
+/* Slow reference for the delays: at each second, counts for how many seconds the value has been on the same side, and switches
+   the alarm if that is long enough. */
 static bool slow_active(const int *sides, int now, const struct condition_delays *delays)
 {
     bool active = false;

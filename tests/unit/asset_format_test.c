@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Asset files: what the writer builds is read back, and every kind of damage is refused with its reason. */
+/* Asset files: the reader gives what was passed to the writer, and refuses every kind of damage with a reason. */
 #include "protocol/asset_distance.h"
 #include "protocol/asset_format.h"
 #include "protocol/distance_pack.h"
@@ -7,7 +7,8 @@
 #include "tests/support/test.h"
 #include <xxhash.h>
 
-/* Two levels: two triangles on four vertices, then one triangle on the first three. One texture, two sensors. */
+/* The asset of the tests: a level with two triangles on four vertices, and a coarser level with one triangle on the first three
+   vertices; one texture and two sensors. */
 static const float positions[4][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 1, 1, 0.5f } };
 static const float normals[4][3] = { { 0, 0, 1 }, { 0, 0, 1 }, { 0, 0, 1 }, { 0, 0, 1 } };
 static const float texcoords[4][2] = { { 0, 0 }, { 1, 0 }, { 0, 1 }, { 1, 1 } };
@@ -83,7 +84,7 @@ static struct asset_bytes build(const struct asset_parts *parts)
     return f;
 }
 
-/* Recomputes the checksum after a change, as the format's documentation defines it. */
+/* Makes the file's checksum right again after a change, computed as the format's documentation says. */
 static void seal(struct asset_bytes *f)
 {
     f->header->checksum = 0;
@@ -112,7 +113,8 @@ static void refused_sealed(struct asset_bytes *f, const char *reason)
     refused(f, f->size, reason);
 }
 
-/* Asserts that the valid file is refused after a change to the header, or to a section whose elements are of `type`. */
+/* Changes one element of a valid file's section, or (REFUSED_HEADER) its header, corrects the checksum, and asserts that the
+   reader refuses the file with this reason. */
 #define REFUSED(section, type, change, reason)                                                                                             \
     do {                                                                                                                                   \
         struct asset_bytes changed = build(&good);                                                                                         \
@@ -202,7 +204,8 @@ TEST(the_layout_is_pinned)
     assert_int_equal(ASSET_SECTION_COUNT, 15);
     struct asset_bytes f = build(&good);
     assert_memory_equal(f.bytes, "PLCASSET\6\0\0\0\x68\1\0\0", 16);
-    /* hash of the file without its header: if it changes, the format has changed and its version must be raised */
+    /* Hash of the written file without its header. If it changes, the format has changed, and the version of the format must be
+       raised. */
     assert_int_equal(XXH3_64bits(f.bytes + 360, f.size - 360), 0x111241323613397full);
     free(f.bytes);
 }
@@ -281,7 +284,7 @@ TEST(wrong_vertices_are_refused)
 TEST(wrong_primitives_and_levels_are_refused)
 {
     REFUSED(ASSET_INDICES, uint32_t, [4] = 4, "primitive 0: index 4 refers to vertex 4, but there are only 4 vertices");
-    /* a valid index in the file, but outside the vertices that this level uses */
+    /* vertex 3 exists in the file, but does not belong to this level */
     REFUSED(ASSET_INDICES, uint32_t, [7] = 3, "primitive 1: index 7 refers to vertex 3, but there are only 3 vertices");
     REFUSED(ASSET_PRIMITIVES, struct asset_primitive, [1].first_index = UINT32_MAX - 2, "primitive 1: starts at index");
     REFUSED(ASSET_PRIMITIVES, struct asset_primitive, [1].index_count = 2,
@@ -333,7 +336,8 @@ static float unit(uint32_t *seed)
     return (float)(*seed >> 8) / 16777216.0f;
 }
 
-/* Reference: returns whether all triangles of a cluster face away from the eye, computed per triangle in doubles. */
+/* Reference for culling: returns whether all triangles of a cluster face away from the eye, computed for each triangle in
+   double precision. */
 static bool backs_only(const float (*p)[3], const uint32_t *v, uint32_t count, const float eye[3])
 {
     for (uint32_t i = 0; i < count; i += 3) {
@@ -351,8 +355,8 @@ static bool backs_only(const float (*p)[3], const uint32_t *v, uint32_t count, c
     return true;
 }
 
-/* Random fans that face roughly upwards, seen from random eyes: every culled cluster faces away, and most clusters that face away are
-   culled. */
+/* Clusters are random fans of triangles that face roughly upwards, seen from random eyes. Every cluster that is culled must
+   face away completely, and most clusters that face away must be culled. */
 TEST(turned_away_means_only_backs)
 {
     uint32_t seed = 5, backs = 0, left_out = 0;
@@ -411,8 +415,8 @@ TEST(wrong_sensors_are_refused)
     REFUSED(ASSET_SENSORS, struct asset_sensor, [1].nearest_vertex = 4, "sensor 1: the nearest vertex is 4, but there are only 4 vertices");
 }
 
-/* Each code decodes to a larger distance than the code before. Each distance gets the nearest code, up to half-way to the
-   neighbouring codes. */
+/* Distances are stored as 16-bit codes. Each code must decode to a larger distance than the previous one, and each distance
+   must get the nearest code. */
 TEST(distances_have_16_bits)
 {
     assert_true(asset_distance_of(0) == 0 && asset_distance_of(ASSET_DISTANCE_NONE) == INFINITY);
@@ -429,9 +433,12 @@ TEST(distances_have_16_bits)
     }
 }
 
-enum { MANY = 70, FAR = 600, BLOCKS = 3 }; /* number of sensors; of vertices; of blocks of vertices */
+/* MANY: number of sensors; FAR: number of vertices; BLOCKS: number of blocks in which the distances of FAR vertices are stored
+   */
+enum { MANY = 70, FAR = 600, BLOCKS = 3 };
 
-/* Returns an asset with FAR vertices along a line, and with sensors but no distances. FAR exceeds one block of distances. */
+/* Returns an asset with FAR vertices along a line and sensor_count sensors, but without distances. FAR is larger than one block
+   of distances, so there are several blocks. */
 static struct asset_parts long_line(uint32_t sensor_count)
 {
     static float at[FAR][3], up[FAR][3];
@@ -488,8 +495,8 @@ struct packed_file {
     uint64_t offsets[BLOCKS + 1];
 };
 
-/* Makes distances that grow along a line with a uniform error, and with jumps unless error_m is 0. Some vertices have no path
-   to sensors 3 and 9. */
+/* Makes codes of distances that grow along the line, with random errors of up to error_m and, unless error_m is 0, with jumps.
+   Some vertices cannot be reached from the sensors 3 and 9. */
 static void make_codes(struct packed_file *packed, double error_m)
 {
     for (size_t s = 0; s < MANY; s++)
@@ -573,7 +580,7 @@ TEST(damaged_packed_distances_are_refused)
     make_codes(&packed, 0.01);
     pack_codes(&packed);
     const size_t block = packed.offsets[1];
-    /* refused: the offset table says that block 0 of the distances begins inside the table itself */
+    /* refused: the table states that block 0 begins at byte 8, which is still in the table */
     packed_refused(&packed, 0, 8);
     packed_refused(&packed, sizeof(uint64_t) + 7, 0x80);   /* refused: block 1 of the distances begins beyond the end of the section */
     packed_refused(&packed, BLOCKS * sizeof(uint64_t), 0); /* refused: the last block of the distances ends before its section does */

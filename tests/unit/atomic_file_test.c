@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Atomic replacement of files: what readers see during it, what a failure leaves behind, and that it never writes through
-   existing files and links. */
+/* Atomic replacement of files: readers see the old or the new content, a failure leaves nothing behind, and the new content is
+   never written through existing files or links. */
 #include "base/files/atomic_file.h"
 
 #include "tests/support/test.h"
@@ -69,7 +69,8 @@ CASE(one_that_is_given_up_leaves_nothing)
     assert_nothing_beside(f);
 }
 
-/* An attacker puts a link at the temporary file's path, pointing to a file that only this program may write. */
+/* An attacker has put a symlink at the path of the temporary file. It leads to a file that only this program may write, which
+   must stay unchanged. */
 CASE(links_and_files_beside_are_not_written_through)
 {
     char *secret = temp_write_text(f->folder, "secret", "secret"), *link = test_printf("%s.%ld.new", f->path, (long)getpid());
@@ -88,8 +89,9 @@ CASE(links_and_files_beside_are_not_written_through)
 
 struct held_job {
     struct file_job job;   /* first member */
-    pthread_mutex_t *gate; /* the writer thread waits for this lock before it writes the job's file; NULL: it does not wait */
-    int error, *finished;  /* error: result of writing; finished: receives it in the test, ENOENT before */
+    pthread_mutex_t *gate; /* lock that the test holds to keep the writer thread from writing this file; NULL: the thread does not wait */
+    /* error: result to be returned by the write, 0 or -errno; *finished receives the result, and is ENOENT before */
+    int error, *finished;
 };
 
 static int write_held(struct file_job *job)
@@ -143,7 +145,7 @@ TEST(a_failed_write_fails_those_that_build_on_it)
     assert_int_equal(file_writer_settled(writer, &first), -ETIMEDOUT);
     pthread_mutex_unlock(&gate);
     assert_true(file_writer_wait(writer, 60 * NS_PER_S));
-    /* the writer has finished, but the event loop gets results only when it collects the finished jobs */
+    /* still ENOENT: the thread has finished the job, but results are delivered only by file_writer_collect() */
     assert_int_equal(one, ENOENT);
     assert_int_equal(queue_held(writer, &owner_a, NULL, 0, &late), -ENOSPC); /* builds on what failed */
     assert_int_equal(late, -ENOSPC);
@@ -155,11 +157,12 @@ TEST(a_failed_write_fails_those_that_build_on_it)
     assert_int_equal(file_writer_settled(writer, &first), -ENOSPC);
     assert_int_equal(file_writer_settled(writer, &second), -ENOSPC);
     assert_int_equal(file_writer_settled(writer, &none), 0);
-    /* the failure is over: the next job starts from the content on disk */
+    /* after the failure was collected, the next job is accepted, because it starts from the content on disk */
     assert_int_equal(queue_held(writer, &owner_a, NULL, 0, &late), 0);
     file_writer_destroy(&writer);
     assert_int_equal(late, 0);
-    assert_int_equal(atomic_load(&written), 3); /* the job queued after the failed one, for the same file, was not written */
+    /* three of the jobs were written; the one that was queued after the failed job for the same file was not */
+    assert_int_equal(atomic_load(&written), 3);
 }
 
 TEST(a_disk_that_hangs_fills_the_queue_and_owners_may_leave)
@@ -174,7 +177,7 @@ TEST(a_disk_that_hangs_fills_the_queue_and_owners_may_leave)
     while (count < 200 && queue_held(writer, &owner, NULL, 0, &results[count]) == 0)
         count++;
     assert_in_range(count, 63, 64);
-    assert_int_equal(results[count], -ETIMEDOUT); /* the queue is full: this job is refused at once, and earlier ones keep waiting */
+    assert_int_equal(results[count], -ETIMEDOUT); /* the queue is full, so this job was refused at once; the earlier jobs still wait */
     assert_int_equal(results[count - 1], ENOENT);
     file_writer_forget(writer, &leaver);
     pthread_mutex_unlock(&gate);

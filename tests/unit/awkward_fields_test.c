@@ -13,14 +13,15 @@
 
 #define STEP (1 / 255.0)
 #define POINTS 20000      /* number of random points that are checked per distance method */
-#define FEW 4             /* number of points whose error may exceed one colour step */
+#define FEW 4             /* number of random points whose error may exceed the limit in a case without a reach */
 #define FEW_AT_RIMS 1000  /* where reaches end, */
-#define MOST_STEPS 4.0    /* largest allowed error at any point, in colour steps */
+#define MOST_STEPS 4.0    /* limit for the error at any point, in colour steps (1/255 of the range) */
 #define ROUNDING 1.1      /* factor on the allowed error, because distances are rounded to floats */
-/* the report's error is measured at sample points; between them the error may be this many times as large */
+/* factor: the error that the report names is measured at sample points, and between these the error may be this many times as
+   large */
 #define NAMED 2.0
-#define LEAST_M 1e-5      /* metres; a sensor nearer than this gets all the weight, see server/field */
-#define RIM_OF_REACH 0.05 /* points this near to the edge of the data are not compared; a fraction of the reach */
+#define LEAST_M 1e-5      /* metres; at a distance below this, a sensor gets all the weight, as in server/field */
+#define RIM_OF_REACH 0.05 /* as a fraction of the reach: points this close to the border of the area with data are not compared */
 #define MOST 4096         /* maximum number of sensors, vertices and triangles of a case */
 
 struct awkward {
@@ -61,7 +62,7 @@ static void add_sensor(struct awkward *a, double x, double y)
     a->sensors_m[a->sensor_count++][1] = y;
 }
 
-/* Makes a plate of about 6 m x 4 m: nine triangles around a random point near the middle. */
+/* Makes a plate of about 6 m x 4 m from nine triangles, which share a random vertex near its middle. */
 static void make_plate(struct awkward *a)
 {
     double wide_m = chance(5, 7), high_m = chance(3, 5), t = chance(0.3, 0.7);
@@ -125,16 +126,16 @@ static void write_plant(const struct awkward *a)
     mem_free(reach);
 }
 
-/* errors of an asset's finest level, as the preparation's report names them, in colour steps; 0: not named */
+/* errors of an asset's finest level that the report of the preparation names, in colour steps; 0: the report names none */
 struct named {
-    /* worth_a_look: error in the report's text; beside_rims: error in the report's table, which includes edges too short to cut
-       and edges of the data */
+    /* worth_a_look: error in the report's list of assets to look at; beside_rims: error in the report's table, which also
+       includes edges that are too short to cut and edges at the border of the data */
     double worth_a_look, beside_rims;
-    double by_power;                  /* error along the surface with a high power of distances */
+    double by_power;                  /* error for distances along the surface and interpolation with a high power */
 };
 
-/* Returns the error in colour steps that the report names for a field that raises distances along the surface to a high power;
-   0: none named. */
+/* Returns the error in colour steps that the report names for an interpolation with a high power of distances along the
+   surface; 0: it names none. */
 static double steps_by_power(const json_t *look_at)
 {
     size_t i;
@@ -178,7 +179,8 @@ static double nearest_m(const struct awkward *a, const double *distance_m)
     return near_m;
 }
 
-/* Shepard weights by distance, as server/field defines them. If no sensor reaches the point, the nearest sensor gets all the weight. */
+/* Computes the Shepard weights of all sensors from their distances, as server/field defines them. If the point is beyond every
+   sensor's reach, the nearest sensor gets all the weight. */
 static void weights_of(const struct awkward *a, const double *distance_m, double *weights)
 {
     double near_m = fmax(nearest_m(a, distance_m), LEAST_M), sum = 0;
@@ -212,7 +214,8 @@ static double area_of(const struct asset_view *view, const uint32_t v[3])
     return fabs(ax * by - ay * bx) / 2;
 }
 
-/* Returns the cumulative areas of the finest level's triangles; triangles without data count 0. Free with mem_free. */
+/* Returns the running sums of the areas of the finest level's triangles, in which triangles without data have area 0. The
+   caller frees the array (mem_free). */
 static double *sum_areas(const struct awkward *a, const struct asset_view *view)
 {
     size_t count = finest(view)->index_count / 3;
@@ -230,7 +233,7 @@ static double *sum_areas(const struct awkward *a, const struct asset_view *view)
     return areas;
 }
 
-/* Draws a triangle with a probability proportional to its area. */
+/* Chooses a random triangle, each with a probability proportional to its area. areas: from sum_areas(). */
 static const uint32_t *triangle_somewhere(const struct asset_view *view, const double *areas)
 {
     size_t low = 0, high = finest(view)->index_count / 3 - 1;
@@ -245,7 +248,8 @@ static const uint32_t *triangle_somewhere(const struct asset_view *view, const d
     return view->indices + finest(view)->first_index + 3 * low;
 }
 
-/* Returns the largest error that any readings can cause at a random point of the triangle; 0 where there is no data, or almost none. */
+/* Returns the largest error at a random point of the triangle that any readings can cause, as a share of the range. Returns 0
+   if there is no data, or almost none. */
 static double error_in(const struct awkward *a, const struct asset_view *view, const uint32_t v[3], bool geodesic)
 {
     static double at_corner[MOST], weights[MOST], shown[MOST], truth[MOST];
@@ -277,7 +281,8 @@ static int by_size(const void *a, const void *b)
     return *(const double *)a < *(const double *)b ? -1 : *(const double *)a > *(const double *)b;
 }
 
-/* Asserts that all but a few errors are at most `steps`, or that the report names the asset. */
+/* Asserts that all errors but a few are at most `steps` colour steps, or that the report names the asset with an error that is
+   large enough. */
 static void assert_errors(const struct awkward *a, double *errors, const char *name, double steps, const struct named *named)
 {
     const size_t few = a->reach_m < INFINITY ? FEW_AT_RIMS : FEW;
@@ -390,7 +395,8 @@ TEST_WITH(hundreds_of_sensors_on_nine_triangles, prep_case_set_up, prep_case_tea
     assert_true(assert_true_or_named(&a).worth_a_look > 1);
 }
 
-/* Far too many sensors for nine triangles: comparing all of them would take too long, but the report must name the asset. */
+/* Thousands of sensors on nine triangles, far too many to show exactly. Comparing all points would take too long, so the test
+   only asserts that the report names the asset. */
 TEST_WITH(thousands_of_sensors_on_nine_triangles, prep_case_set_up, prep_case_tear_down)
 {
     struct awkward a = { .files = *state };

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Baselines: which ones are kept, replaced and deleted, and that a reader's baseline stays valid while it is held. */
+/* Baselines (snapshots with which later readings are compared): which are stored, replaced and deleted. A baseline that a
+   reader holds must stay valid until it is released. */
 #include "value/baselines.h"
 
 #include "tests/support/test.h"
@@ -39,7 +40,8 @@ TEST(test_a_name_is_found_replaced_and_removed)
     assert_int_equal(baselines_find(baselines, "calm"), id);
     const struct snapshot *held = baselines_take(baselines, id);
     assert_int_equal(set(baselines, "calm", 5), id);
-    assert_true(held->readings[2].value == 4); /* a reader that holds the old baseline still sees the old values */
+    /* the baseline was replaced, but a reader that holds the old one must still see its values */
+    assert_true(held->readings[2].value == 4);
     const struct snapshot *now = baselines_take(baselines, id);
     assert_true(now->readings[2].value == 5 && now->taken_utc_ns == 1005);
     assert_true(baselines_describe(baselines, id, &what) && what.taken_utc_ns == 1005);
@@ -71,7 +73,7 @@ TEST(test_names_are_bounded)
     assert_true(baselines_may_set(baselines, "b7"));
     assert_int_equal(baselines_list(baselines, list), BASELINES_NAMED);
     assert_string_equal(list[31].name, "b31");
-    /* a baseline without a name is stored even when the maximum number of named baselines is reached */
+    /* accepted: the limit applies to baselines with a name only */
     assert_int_not_equal(keep(baselines, 5), 0);
     baselines_destroy(&baselines);
 }
@@ -80,7 +82,8 @@ TEST(test_without_a_name_the_oldest_goes)
 {
     struct baselines *baselines = baselines_create();
     uint32_t name = set(baselines, "stays", 1), first = keep(baselines, 100), last = first;
-    assert_int_equal(keep(baselines, 100), first); /* a snapshot of the same instant is stored once */
+    /* storing a snapshot of the same instant again must give the same id, so it is stored once */
+    assert_int_equal(keep(baselines, 100), first);
     for (int i = 1; i < BASELINES_UNNAMED; i++)
         last = keep(baselines, 100 + i);
     const struct snapshot *held = baselines_take(baselines, first);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* BVH queries compared with a loop over every triangle; of equally near triangles, the one with the lowest number comes first. */
+/* Queries of the BVH (tree of bounding boxes over triangles), compared with loops over all triangles. Of several equally near
+   triangles, the query must return the one with the lowest number. */
 #include "tests/support/test.h"
 
 #include "base/math/vec.h"
@@ -7,11 +8,12 @@
 #include "tests/support/surface_case.h"
 
 #define POINTS 400
-/* distances that differ by less than this fraction of the coordinates count as equal, because rounding decides */
+/* distances that differ by less than this fraction of the coordinates are treated as equal, because only rounding decides
+   between them */
 #define FAR 1e-9
 
-/* Makes a mesh of triangles on a lattice of points, many of which share a corner or an edge, and loose triangles of all sizes and
-   shapes. */
+/* Makes a mesh of triangles on a lattice of points, so that many share a corner or an edge, and of separate triangles of all
+   sizes and shapes. */
 static void make_mesh(struct trimesh *mesh, size_t tri_count, double shift_m)
 {
     const uint32_t side = 6;
@@ -74,7 +76,8 @@ static double distance_plainly(const double p[3], const double at[3][3])
     return inside ? fmin(found_m, fabs(vec_dot(ap, n)) / vec_length(n)) : found_m;
 }
 
-/* Triangles from well shaped to 10,000 times as long as high, obtuse and acute; points from close by to a hundred triangle sizes away. */
+/* Distances to triangles of all shapes, up to 10,000 times as long as high, from points close by and up to a hundred triangle
+   sizes away. */
 TEST(test_nearest_of_a_triangle)
 {
     for (int i = 0; i < 200000; i++) {
@@ -99,7 +102,7 @@ TEST(test_nearest_of_a_triangle)
     }
 }
 
-/* Reference: tries every triangle and returns the first of the nearest ones. */
+/* Reference for bvh_nearest(): tries every triangle and returns the nearest; of several equally near ones, the first. */
 static uint32_t find_slowly(const struct trimesh *mesh, const double point[3], const uint32_t *third, double *distance_m)
 {
     uint32_t best = TRIMESH_NONE;
@@ -114,8 +117,8 @@ static uint32_t find_slowly(const struct trimesh *mesh, const double point[3], c
     return best;
 }
 
-/* Checks that the BVH finds a triangle within the limit if one exists, in any search order, and never one that is too far away
-   or excluded. */
+/* Asserts bvh_any_within(): if `any`, it finds a triangle within the limit, and otherwise none. A found triangle is never too
+   far away or excluded. first: triangle that the search tests first. */
 static void check_any(const struct trimesh *mesh, const struct bvh *bvh, const double point[3], const uint32_t *third, double limit_m,
                       size_t first, bool any)
 {
@@ -199,7 +202,8 @@ static void check_ray(const struct trimesh *mesh, const struct bvh *bvh, const d
     mem_free(met);
 }
 
-/* Every triangle whose box is within margin_m is visited exactly once; a triangle clearly beyond it is not visited. */
+/* Asserts that bvh_overlaps() visits exactly once each triangle whose bounding box is within margin_m of the box, and no
+   triangle that is clearly farther away. */
 static void check_box(const struct trimesh *mesh, const struct bvh *bvh, const double low[3], const double high[3], double margin_m)
 {
     char *met = mem_array(mesh->tri_count, 1);
@@ -245,8 +249,8 @@ TEST(test_what_rays_and_boxes_meet)
     assert_true(met[0] > 100000 && met[1] > 1000);
 }
 
-/* Triangle counts that exactly fill the nodes, or are one less or more; meshes far from the origin, where floats are coarse;
-   points far away, on corners and on planes. */
+/* Meshes whose number of triangles exactly fills the tree's nodes, or is one less or more, also far from the origin, where
+   floats are coarse. Points are far away, on corners and in planes of triangles. */
 TEST(test_finds_the_nearest)
 {
     static const size_t counts[] = { 0, 1, 7, 8, 9, 63, 64, 65, 512, 513, 3000 };
@@ -284,7 +288,8 @@ static bool is_other(const void *arg, uint32_t tri)
     return l->label[tri] != l->skipped;
 }
 
-/* Triangles are labelled by position, so that whole nodes of the BVH have the same label. */
+/* A search that skips a label (a number per triangle) must find the same triangle as a search with an equivalent predicate.
+   Labels depend on the position, so that all triangles of some nodes have the same label. */
 TEST(test_skipping_a_label_finds_what_a_predicate_finds)
 {
     uint32_t label[3000];
@@ -310,7 +315,8 @@ TEST(test_skipping_a_label_finds_what_a_predicate_finds)
     trimesh_finish(&mesh);
 }
 
-/* Points on and above a lattice: many distances are exactly equal. */
+/* Points on a lattice and above it have exactly the same distance from several triangles: the one with the lowest number must
+   be found. */
 TEST(test_equally_near_ones_go_by_number)
 {
     struct trimesh mesh;
@@ -331,7 +337,8 @@ TEST(test_equally_near_ones_go_by_number)
     trimesh_finish(&mesh);
 }
 
-/* Segments parallel to a side of a triangle: in exact arithmetic they never cross the triangle, but rounding moves them either way. */
+/* Random segments in a triangle's plane, parallel to one of its sides and outside it. Computed exactly, they never cross the triangle,
+   but rounding moves them to either side. */
 TEST(test_a_parallel_segment_crosses_nothing)
 {
     size_t crossed = 0;

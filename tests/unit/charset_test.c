@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Detection of the encoding of short texts in tag lists and drawings; counts the correctly recognised texts of each encoding. */
+/* Recognition of the encoding of short texts, such as those in tag lists and drawings. Counts the texts of each encoding that
+   are recognised correctly. */
 #include "base/text/charset.h"
 
 #include "tests/support/test.h"
@@ -57,7 +58,7 @@ static const struct encoded_sample {
     { "UTF-16BE", { "Tag,Unit\nTT-1,°C\n", "Имя;Адрес\nНасос;40001\n", "名称,地址,单位\n泵,400001,℃\n" } },
 };
 
-/* A text decoded to wrong letters is worse than one reported as uncertain. */
+/* Counts right, uncertain and wrong results. A wrong result is worse than one that is reported as uncertain. */
 TEST(test_kinds)
 {
     size_t texts = 0, right = 0, unsure = 0, wrong = 0;
@@ -140,7 +141,7 @@ TEST(test_names)
     mem_free(text.utf8);
 }
 
-/* A byte that two encodings explain equally well. */
+/* The text contains a byte that two encodings explain equally well: the result must name both and the option --encoding. */
 TEST(test_unsure)
 {
     struct charset_choice choice = charset_find("Gr\x94\xe1"
@@ -152,8 +153,8 @@ TEST(test_unsure)
     mem_free(said);
 }
 
-/* Where an encoding stores an accent after its letter, the decoder holds the last letter back until the end. Losing it would
-   turn PT-10A into PT-10, another tag. */
+/* In some encodings an accent follows its letter, so the decoder delays each letter until the next byte. The last letter must
+   not be lost: it would turn the tag PT-10A into PT-10, which is another tag. */
 TEST(test_last_letter)
 {
     static const struct {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Clock synchronisation as the kernel reports it (adjtimex), as chrony and other daemons set it. */
+/* Whether the system clock is synchronised, from what the kernel reports (adjtimex), as chrony and other daemons set it. */
 #include "base/system/clock_state.h"
 
 #include "tests/support/test.h"
@@ -18,7 +18,8 @@ TEST(what_keeps_it_right_is_believed)
     assert_int_equal(clock_state_of(&timex, TIME_INS).leap_s, 1);
     timex.status = STA_PLL | STA_DEL;
     assert_int_equal(clock_state_of(&timex, TIME_DEL).leap_s, -1);
-    timex.status = STA_PLL | STA_INS; /* during the leap second itself and the second after it */
+    /* states during an inserted leap second (TIME_OOP) and after it (TIME_WAIT), in which the clock is still synchronised */
+    timex.status = STA_PLL | STA_INS;
     assert_true(clock_state_of(&timex, TIME_OOP).set);
     assert_true(clock_state_of(&timex, TIME_WAIT).set);
 }
