@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Answers each connection with one line. Reads nothing from clients, so their input cannot harm it. */
+/* Tells a load balancer (HAProxy agent check) whether to send users to this daemon, and how busy it is: answers each connection
+   with one line such as "up 80%". Reads nothing from clients, so their input cannot harm it. */
 #include "agent.h"
 
 #include <errno.h>

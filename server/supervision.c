@@ -24,7 +24,8 @@ struct supervision {
     struct {
         counter *reload_good, *reloaded_s;
     } counters;
-    struct service_patience *patience; /* not NULL while the service manager is asked to wait until the daemon is ready */
+    /* object with which this daemon asks the service manager for more time to start; NULL once the start is over */
+    struct service_patience *patience;
     char *runtime;                     /* runtime folder of the service; NULL: there is none */
     int64_t watchdog_ns;               /* interval in nanoseconds at which the service manager expects watchdog messages; 0: off */
     /* refused: the last reload failed; reloaded: the result of a finished reload must still be reported */

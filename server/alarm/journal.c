@@ -115,9 +115,9 @@ static void take(struct journal *journal)
     waiting->count = 0;
 }
 
-/* Waits until at least one journal row is queued, but at least GATHER_NS, so that one transaction writes all rows of that period.
-   Then takes the queued rows. journal->urgent or the order to stop ends the wait at once. *urgent: a caller waits for these rows
-   to be stored. Returns false if the thread must end. */
+/* Waits for GATHER_NS, so that one transaction writes all rows of that period, and then, if no row is waiting, until the first
+   one is queued. journal->urgent or the order to stop ends both waits at once. Takes the queued rows. *urgent: true if a caller
+   waits for these rows to be stored. Returns false if the thread must end. */
 static bool wait_for_work(struct journal *journal, bool *urgent)
 {
     int64_t until_ns = clock_mono_ns() + GATHER_NS;

@@ -27,9 +27,11 @@ struct core_link_params {
     int url_count;
     const char *token_path, *ca_path; /* token_path: token file, NULL: none; ca_path: file of trusted certificates, NULL: the system's */
     const char *version, *node;       /* version: version of this program; node: name of this renderer, for the core's log */
-    /* standby core only: promises the leader, when asked, not to take the lead. NULL: this node is a renderer */
+    /* standby core only: lease keeper that decides about the leader's requests to promise not to take the lead
+       (corelink/lease.h). NULL: this node is a renderer */
     struct lease_keeper *keeper;
-    struct historian *historian;      /* standby core only: records the leader's samples. NULL: nothing is recorded */
+    /* standby core only: historian that records the leader's samples on this machine. NULL: nothing is recorded */
+    struct historian *historian;
     /* standby core only: folder of the file that lists for which alarms the leader has sent notifications. NULL: not stored */
     const char *folder;
     void (*notify)(void *arg);        /* called on the link's thread when core_link_collect() has new messages */

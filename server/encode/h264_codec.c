@@ -27,7 +27,7 @@ static const struct library libraries[] = {
     { "libopenh264", "rc_mode=quality allow_skip_frames=0", false },
 };
 static const struct library other_library = { "", "", false };
-/* default bit rate, in bits per pixel and second, for encoders that cannot encode with constant quality */
+/* default bit rate for encoders that cannot encode with constant quality: bits per second for each pixel of the frame */
 static const int64_t DEFAULT_BITS_PER_PX_S = 4;
 enum { RATE_HZ = 60, SLICED_PX = 1500000, MANY_CORES = 8, MAX_THREADS = 8 };
 

@@ -27,7 +27,7 @@ size_t directions_read(const struct scene *scene, int asset, int group, const st
 struct direction_place { /* a point on a triangle of the asset file */
     uint32_t corners[3];
     float weights[3], normal[3];
-    uint32_t triangle; /* index of the triangle; for callers that need it, because directions_find() does not read it */
+    uint32_t triangle; /* index of the triangle in the asset file; directions_find() does not use it, it is kept for the caller */
 };
 struct direction {
     float along[3]; /* direction of the interpolated vector: a unit vector tangent to the surface, in the axes of the asset file */

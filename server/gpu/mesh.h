@@ -24,8 +24,9 @@ enum mesh_attribute {
    matrices (from MESH_INSTANCE_PLACES on) */
 enum { MESH_INSTANCE_VECTORS = 10 };
 
-/* Input of mesh_init(). Pointers need only be valid during the call, except for positions, colours and indices. GL on a
-   processor reads these in place (gl.reads_in_place), so they must stay unchanged until mesh_finish(). */
+/* Input of mesh_init(). Pointers need only be valid during the call, except for positions, colours and indices. If GL runs in
+   software on the CPU (gl.reads_in_place), it reads these three arrays where they are, so they must stay unchanged until
+   mesh_finish(). */
 struct mesh_params {
     size_t vertex_count, index_count;
     const float (*positions_m)[3];

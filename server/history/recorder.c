@@ -11,9 +11,9 @@
 struct recorder_lane {
     struct swinging_door door;
     struct swinging_door_params params;
-    int64_t sampling_us; /* interval at which the tag's source checks for changes */
-    /* after a longer time without samples, the last value counts as unchanged until sampling_us before the next sample;
-       INT64_MAX: samples are imported, and nothing is recorded for a time without samples */
+    int64_t sampling_us; /* interval in microseconds at which the tag's source checks for changes */
+    /* If no sample arrives for more than this many microseconds, the recorded line keeps the last value until sampling_us
+       before the next sample. INT64_MAX: samples are imported, and nothing is recorded for a time without samples. */
     int64_t silence_us;
     /* time and quality of the sample with the latest time, which need not be the last to arrive: a source may send an old time */
     int64_t latest_us;
@@ -180,8 +180,8 @@ void recorder_held(struct recorder *recorder, struct recorder_rows *held)
     for (size_t i = 0; i < recorder->touched_count; i++) {
         struct recorder_lane *lane = &recorder->lanes[recorder->touched[i]];
         lane->touched = false;
-        /* also when the newest sample was just recorded: that point becomes the tag's held row, so that the end of the tag's
-           recorded line is known after a crash */
+        /* The held row is the tag's newest sample, which marks the end of the tag's recorded line after a crash. It is written
+           even if that sample was recorded as a point already. */
         recorder_newest(recorder, recorder->touched[i], &point);
         add_points(held, recorder->touched[i], &point, 1);
     }

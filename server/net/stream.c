@@ -206,7 +206,8 @@ void streams_check_tokens(struct server_context *server, int64_t now_utc_ns)
         session_check_token(stream->session, clock_mono_ns(), now_utc_ns);
 }
 
-/* Logs once, after a few seconds, that a client acknowledges no picture; before the page's own watchdog reloads it (watchdog.js). */
+/* Logs that a client acknowledges no picture: once, after SILENT_NS. This is sooner than the page's own watchdog (watchdog.js)
+   reloads the page, so the log shows the cause of the reload. */
 static void log_silence(struct server_context *server, struct stream *stream, int64_t now_ns)
 {
     const struct session *session = stream->session;

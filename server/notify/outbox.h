@@ -10,12 +10,13 @@
 #include "plant/sections/notification.h"
 
 enum { OUTBOX_ITEMS = 5000 /* maximum number of queued alarms, of all recipients together */, OUTBOX_ID_BYTES = 40 };
-/* minimum time between two notifications of an alarm that comes and goes without being acknowledged */
+/* minimum time in microseconds between two notifications of an alarm that is raised repeatedly without being acknowledged */
 #define OUTBOX_REPEAT_US (600 * INT64_C(1000000))
 #define OUTBOX_KEEP_US (86400 * INT64_C(1000000)) /* age at which a message that could not be delivered is dropped, in microseconds */
 /* interval in microseconds after which all active alarms are sent to Alertmanager again */
 #define OUTBOX_REFRESH_US (60 * INT64_C(1000000))
-#define OUTBOX_ALERT_US (300 * INT64_C(1000000))  /* Alertmanager drops an alarm that is not sent again within this time */
+/* time in microseconds after which Alertmanager drops an alarm, unless the alarm is sent again before (each message says so) */
+#define OUTBOX_ALERT_US (300 * INT64_C(1000000))
 
 struct outbox_item { /* one alarm in a message */
     char *name;      /* name of the tag or device that has the alarm */

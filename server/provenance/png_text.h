@@ -8,7 +8,8 @@
 
 struct png_text {
     const char *keyword; /* keyword of the text chunk, which says what the text is; 1 to 79 bytes */
-    const char *text;    /* UTF-8; use ASCII, because some readers decode the text as Latin-1, as PNG says */
+    /* the chunk's text in UTF-8; use ASCII only, because some readers decode it as Latin-1, as the PNG standard says */
+    const char *text;
     size_t length;
 };
 

@@ -111,7 +111,8 @@ struct frame *frame_cut(struct frame *whole, const struct frame_part *part)
     return frame;
 }
 
-/* The baseline that one half of a split view subtracts from its readings, if the half shows differences. */
+/* Baseline (stored earlier readings, value/baselines.h) that one half of a split view subtracts from its readings, if that half
+   shows differences. */
 struct then {
     /* wanted: this half shows differences from a baseline. distance: this half shows distances from a sensor; its markers
        already have these distances, which do not depend on readings */

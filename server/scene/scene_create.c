@@ -202,7 +202,8 @@ static bool create_missing(struct log *log, struct scene_asset *asset, const str
     return asset->file != NULL;
 }
 
-/* Completes an asset after its file was opened, or failed to open. */
+/* Checks that the asset's opened file matches the plant file's sensors and the group settings, and places the asset and its
+   sensors in the scene. Logs and returns false if the file could not be opened or does not match. */
 static bool create_asset(struct log *log, struct scene *scene, int index)
 {
     struct scene_asset *asset = &scene->assets[index];

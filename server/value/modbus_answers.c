@@ -45,8 +45,8 @@ static uint32_t quality_of_exception(int code)
     case MODBUS_EXCEPTION_ILLEGAL_DATA_VALUE: return QUALITY_BAD_CONFIGURATION;
     case MODBUS_EXCEPTION_SLAVE_OR_SERVER_FAILURE:
     case MODBUS_EXCEPTION_MEMORY_PARITY: return QUALITY_BAD_DEVICE_FAILURE;
-    /* for exceptions such as busy, Good means that no quality is written. The device is asked again soon; if it stays busy, the
-       readings become stale */
+    /* After other exceptions, such as "busy", the caller writes no quality to the store; QUALITY_GOOD tells it so. The source
+       asks the device again soon. If the exceptions continue, the readings become stale. */
     default: return QUALITY_GOOD;
     }
 }

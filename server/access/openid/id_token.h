@@ -14,7 +14,8 @@ struct id_token_expected {
     const struct openid_config *config;
     const json_t *jwks; /* the identity provider's public keys */
     const char *nonce;  /* nonce that the token must contain; NULL: not checked, because a token from a refresh may lack one */
-    const char *sub;    /* subject (user id at the provider) that the token must contain; NULL: not known yet */
+    /* subject (user id at the provider) that the token must contain; NULL: any, because the user's subject is not known yet */
+    const char *sub;
     int64_t now_s;      /* present time, seconds UTC */
     int64_t patience_s; /* seconds for which a token is still accepted after it expires (claim `exp`) */
 };

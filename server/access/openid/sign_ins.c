@@ -88,8 +88,8 @@ void sign_ins_destroy(struct sign_ins **pointer)
     *pointer = NULL;
 }
 
-/* Returns the entry to use for a new log-in from that address: a free one, or the oldest replaceable one if the address has too
-   many or none is free. */
+/* Returns the table entry to use for a new log-in from that address: a free or expired one, or a new one. An address with
+   SIGN_INS_OF_ADDRESS log-ins in progress loses its oldest log-in instead; a full table loses the oldest log-in of all. */
 static struct sign_in *find_place(struct sign_ins *table, const uint8_t address[16], int64_t now_ns)
 {
     struct sign_in *oldest = NULL, *own = NULL, *unused = NULL;

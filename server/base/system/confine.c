@@ -214,9 +214,10 @@ bool confine_lacks_with(int abi, bool calls, char out[CONFINE_LACKS_BYTES])
         int abi;
         const char *missing;
     } parts[] = {
-        /* abi: first Landlock version that can restrict this access; missing: the access in words. On a kernel with an older
-           Landlock, commands under `convert` keep the access. Programs that read models never have it, because seccomp blocks
-           the system calls. TCP and devices are missing here, because seccomp blocks them for commands, too. */
+        /* Actions that an older kernel lets confined commands do. abi: first Landlock version that can forbid it; missing: text
+           for the warning. The table is about commands that the plant file lists under `convert`. Programs that read models can
+           do none of this, because seccomp blocks the system calls. TCP and devices are not in the table, because seccomp
+           blocks them for commands, too. */
         { ABI_RENAME, "read and write all files of this user" },
         { ABI_TRUNCATE, "truncate all files that this user may write" },
         { ABI_SCOPES, "signal other processes of this user" },

@@ -57,8 +57,8 @@ static const char korean[] =
 struct wide_model {
     const char *name, *frequent;
     double prior;
-    /* Returns the log probability of a character that is not in `frequent`, given its two bytes (second 0: a one-byte
-       character); 0: there is no such character. */
+    /* Returns the log probability, in a text with this model's encoding, of the character with these two bytes, if it is not in
+       `frequent`. second 0: a one-byte character. 0: the encoding has no such character. */
     double (*rate)(unsigned first, unsigned second);
 };
 
@@ -333,11 +333,11 @@ static double score_wide(const struct wide_model *model, const unsigned char *at
         if (length == 2 && set->pairs[pair / 64] >> pair % 64 & 1)
             rate = frequent;
         if (length == 2 && second < 0x80)
-            /* makes up for the second byte, which is ASCII: the one-byte models, with which this score is compared, give no
-               score to ASCII bytes */
+            /* A one-byte model scores only bytes from 0x80 on. The second byte here is below 0x80, so a one-byte model would
+               score one byte and this model two. The constant compensates for that. */
             rate += 3;
         if (length == 1 && rate >= 0 && model->rate == rate_gb && in(second, 0x30, 0x39) && at + 3 < to && in(at[3], 0x30, 0x39)) {
-            length = 4; /* a four-byte character of GB 18030 that GBK lacks */
+            length = 4; /* GB 18030 encodes a character that GBK lacks in four bytes, of which the second and the fourth are digits */
             rate = -14;
         }
         score += rate < 0 ? rate + rate_beside(before, at + length < to ? at[length] : 0) : DAMAGED;

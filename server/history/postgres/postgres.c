@@ -146,8 +146,9 @@ static void restore(struct postgres *postgres)
         postgres->params.restored(postgres->params.arg);
 }
 
-/* If this daemon has become the leader: reconnects with the lock that makes it the only writer. Then ends in the database, with
-   a point without a value, the recorded line (through a tag's points) of each tag that no daemon continues. */
+/* If this daemon has become the leader: reconnects with the lock that makes it the only writer. A tag's recorded line runs
+   through its points. Where no daemon continues a tag's line, adds a point without a value to the database, which ends the
+   line. */
 static void take_lead(struct postgres *postgres)
 {
     pthread_mutex_lock(&postgres->lock);

@@ -71,9 +71,9 @@ static void end(struct postgres_restore *restore)
 
 /* --- ending lines in the database --------------------------------------------------------------------------------------------- */
 
-/* Ends each tag's recorded line (through its points) in the database at the last point, as month_file_recover() does in files.
-   Each tag's newest sample becomes a recorded point, even if later points exist, because a standby may already have sent its
-   first points. */
+/* Ends each tag's recorded line in the database, as month_file_recover() does in files: adds a point without a value 1 us after
+   the tag's last point. Before that, the sender's newest samples (table `newest`) become points, too. They are added even
+   before later points, because a standby may already have sent its first points. */
 bool postgres_restore_end_lines(struct postgres_tables *tables, int64_t now_us)
 {
     static const char sql[] =

@@ -43,8 +43,8 @@ static void fill_scale(struct frame_uniforms *block, const struct frame_context 
     block->lines[2] = block->lines[3] = 0;
 }
 
-/* Sets block->shade, which maps a surface's brightness to a row of the shaded colour map. Where the look forbids light to
-   change colours, that is always the middle row. */
+/* Sets block->shade, which maps a surface's brightness to a row of the shaded colour map. Only the view's default look (shading
+   style) lets light change colours; with any other look, the result is always the middle row. */
 static void fill_shade(struct frame_uniforms *block, const struct view *view)
 {
     /* limits of a surface's brightness that the first and the last row of the shaded colour map represent; darker or brighter

@@ -43,7 +43,8 @@ void interior_islands(const struct trimesh *mesh, char *hidden)
 void interior_resolve_across(const struct trimesh *mesh, char *hidden)
 {
     uint32_t *seen = mem_array(mesh->point_count, sizeof(*seen)), *group = mem_array(mesh->point_count, sizeof(*group));
-    /* by lowest point of a group of INTERIOR_ACROSS triangles: a visible piece that touches the group; TRIMESH_NONE: none found yet */
+    /* by lowest point of a group of connected INTERIOR_ACROSS triangles: a group of connected visible triangles that touches
+       it, given by its lowest point; TRIMESH_NONE: none found yet */
     uint32_t *first = mem_array(mesh->point_count, sizeof(*first));
     char *is_seen = mem_array(mesh->point_count, 1), *joins = mem_array(mesh->point_count, 1);
     for (uint32_t i = 0; i < mesh->point_count; i++) {

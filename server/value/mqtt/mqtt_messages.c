@@ -43,7 +43,9 @@ static void report_skew(struct mqtt_source *mqtt, const char *topic)
     int64_t skew_ns = mqtt->writer.worst_skew_ns, now_ns = mqtt->writer.mono_ns;
     char name[64];
     int64_t *said_ns = &mqtt->skew_said_ns[skew_ns > 0];
-    if (mqtt->sparkplug && skew_ns < 0) /* an old time is normal in Sparkplug, whose timestamps state when a metric last changed */
+    /* No warning for an old time in Sparkplug: its timestamps state when a metric last changed, so they may be old although the
+       node's clock is right. */
+    if (mqtt->sparkplug && skew_ns < 0)
         return;
     if ((skew_ns < SKEW_NS && skew_ns > -SKEW_NS) || (*said_ns && now_ns - *said_ns < SKEW_SAID_NS))
         return;
