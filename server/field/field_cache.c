@@ -118,8 +118,8 @@ void field_cache_keep_columns(struct field *field, struct weights *weights, cons
         return;
     if (had == 0)
         field_cache_make_room(field, bytes < field->bound ? bytes : field->bound, params, previous);
-    /* some columns of G (a column is one sensor's weights) are cached already; there is no room for all columns, so only those
-       stay cached */
+    /* Some columns of G (a column is one sensor's weights) are cached already, but the cache has no room for all columns: keeps
+       the cached columns and adds none. */
     else if (field->bytes - had + bytes > field->bound)
         return;
     else

@@ -46,13 +46,15 @@ struct field_layout {
     const struct layout_points *points; /* points whose distances are wanted; NULL: the vertices of the asset file */
     bool assumed; /* true: all sensor positions are assumed, so one sensor gives the value of the whole asset (field.h) */
     float largest_m[DISTANCES]; /* [enum distance_mode]: largest distance between a vertex and a sensor; 0: not computed yet */
-    uint32_t trial;             /* id of the trial that moved some of these sensors (field/trials.h); 0: none */
+    /* id of the trial, a set of positions that a user tries out, that moved some of these sensors (field/trials.h); 0: none */
+    uint32_t trial;
 };
 
 /* Creates the layout of a group's sensors on an asset. trial: moved sensors; NULL: none. Scene and trial must outlive the
    layout. Returns NULL if no sensor of the group is on the asset. */
 struct field_layout *layout_create(const struct scene *scene, int asset, int group, const struct trial *trial);
-/* Returns true if the trial adds, removes or moves a sensor of this group on this asset. */
+/* Returns true if the trial (set of sensor positions that a user tries out) adds, removes or moves a sensor of this group on
+   this asset. */
 bool layout_is_touched(const struct scene *scene, int asset, int group, const struct trial *trial);
 /* Frees the layout (the sensors of a group on an asset, and their distances). Accepts a pointer to NULL; sets the pointer to
    NULL. */

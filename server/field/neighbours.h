@@ -43,10 +43,12 @@ size_t neighbours_nearest(const struct neighbours *neighbours, size_t sensor, co
 /* A cache of the latest predictions by asset and group; zero-initialise. The scene must outlive the cache. Call from one thread only. */
 struct neighbours_cache {
     struct neighbours_kept {
-        struct neighbours *of;  /* sensors of the group; NULL: the group has no sensor with a known position on the asset */
+        /* the sensors of the group on the asset, prepared for predictions; NULL: no such sensor has a known position */
+        struct neighbours *of;
         struct neighbour *list; /* predictions, one for each sensor of `of`, in the same order */
         size_t count;
-        int64_t taken_mono_ns, taken_utc_ns; /* time of the snapshot from which the predictions were made; 0: none yet */
+        /* time, on both clocks, of the snapshot from which the predictions were made; 0: none were made yet */
+        int64_t taken_mono_ns, taken_utc_ns;
     } * kept;                                /* [asset][group]; NULL: nothing cached yet */
     size_t count;
 };

@@ -24,8 +24,10 @@ struct field_params {
     int group;
     enum field_show show;
     int sensor;        /* index of the tag from which distances are shown; -1: none */
-    uint32_t baseline; /* id of the baseline from which a difference is taken; 0: none */
-    uint32_t trial;    /* id of the trial that moves sensors (field/trials.h); 0: none */
+    uint32_t baseline; /* id of the baseline (stored earlier readings, value/baselines.h) that is subtracted from the readings; 0: none */
+    /* id of the trial (set of sensor positions that a user tries out, field/trials.h) that the field uses; 0: the plant's
+       positions */
+    uint32_t trial;
     /* index of the slot in value/snapshot_cache.h with the past readings to show; 0: current readings. It makes the cache
        distinguish fields of different instants */
     int slot;
@@ -43,7 +45,7 @@ struct field_params {
     /* strengths and decays that replace those of the tag list, sorted by tag; unused elements are all zero */
     struct field_override overrides[FIELD_OVERRIDES];
 };
-/* Fills in the group's defaults from the plant file. */
+/* Sets all parameters to the defaults that the plant file states for the shown group of sensors. */
 void field_params_default(const struct plant *plant, int group, struct field_params *params);
 /* Sets the shown quantity, and adapts the interpolation. `fin` lets values fall towards ambient, which makes no sense for
    `show: operator` (the position of each reading between its tag's limits): it is replaced by `harmonic`, or by `shepard` if

@@ -21,7 +21,8 @@
 /* state->error_limit (error above which a vertex is marked uncertain) is replaced if it is stricter than necessary by more than
    this factor */
 #define ERROR_SLACK 1.5
-/* limit on the values of SHOW_BLIND (the height that a hot spot needs to be noticed), in multiples of the group's range */
+/* Upper limit on the values of SHOW_BLIND, in multiples of the group's range. Such a value is the excess over its surroundings
+   that a hot spot at the vertex needs for a sensor to notice it. */
 #define MAX_BLIND 1000.0
 /* largest change of a reading, in multiples of the range, that is added to existing sums, where its rounding error remains.
    After a larger change, everything is summed again */

@@ -15,7 +15,8 @@ struct import_params {
     /* UTC time in microseconds that corresponds to 0 in the time column; INT64_MIN: the column has timestamps instead */
     int64_t start_us;
     int64_t unit_us;        /* microseconds per unit of the numbers in the time column */
-    /* longest time in microseconds between two samples that does not count as a gap in recording; 0: chosen for each tag */
+    /* longest time in microseconds between two samples that counts as continuous recording, not as a gap; 0: chosen for each
+       tag */
     int64_t longest_gap_us;
 };
 
@@ -28,7 +29,8 @@ struct import_counts {
     struct charset_choice encoding;
     bool exported; /* true: the file has the columns of `plantcast history export` */
     int64_t from_us, to_us;
-    /* minimum and maximum over all tags, in microseconds, of the longest time between two samples that does not count as a gap */
+    /* [0] the smallest, [1] the largest limit that was used for a tag, in microseconds: a longer time between two samples of
+       the tag counts as a gap in recording */
     int64_t longest_us[2];
 };
 

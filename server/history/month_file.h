@@ -84,7 +84,8 @@ int month_file_tidy(struct month_file *file);
 size_t month_file_waiting(const struct month_file *file);
 /* Writes ascending points of one tag, anywhere in the month, and updates the rollups. */
 int month_file_import(struct month_file *file, int tag, const struct history_point *points, size_t count);
-/* Deletes the points between two times whose quality marks a gap in recording. Call it before importing points for that time. */
+/* Deletes the points between two times that mark a gap in recording (by their quality). Call it before importing points for
+   that time. */
 int month_file_forget_gaps(struct month_file *file, int64_t from_us, int64_t to_us, uint32_t gap_quality);
 /* Recovers after the daemon that wrote this file was killed: records the newest samples that it left, each followed by a point
    that marks a gap. *ended_us receives the time when that daemon ended. sends_gaps: also puts the gap points into the outbox

@@ -515,7 +515,9 @@ int month_file_forget_gaps(struct month_file *file, int64_t from_us, int64_t to_
         error = forget_in_blocks(file, &gap);
     if (!error)
         error = forget(file, SQL_FORGET_GAP_NOTES, from_us, to_us, gap_quality);
-    if (!error && has_outbox) /* also deletes the points that mark the gap from the outbox, so that they are not sent to PostgreSQL */
+    /* also deletes the points that mark the gap in recording from the outbox (points to be sent to PostgreSQL), so that they
+       are not sent */
+    if (!error && has_outbox)
         error = forget(file, SQL_FORGET_OUTBOX_GAPS, from_us, to_us, gap_quality);
     return end(file, error);
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Appends loop checks to a file, and keeps the newest check of each tag in memory. */
+/* Appends loop checks (tests that a value forced at a transmitter arrives as the tag's value) to a file, and keeps the newest
+   check of each tag in memory. */
 #include "loopcheck/loop_checks.h"
 
 #include <errno.h>
@@ -34,7 +35,8 @@ struct loop_checks {
     uint64_t *numbers;     /* [tag]: sequence number (loop_checks_number()) of the tag's newest check */
     uint64_t number;
     bool begun;
-    /* [tag]: true if pictures mark the tag as unproven (without a passed loop check); read by the render threads */
+    /* [tag]: true if pictures mark the tag as unproven, because it has no passed loop check (test with a value forced at the
+       transmitter); read by the render threads */
     atomic_bool *unproven;
 };
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The message `prove`, by which a user records a loop check of a tag. Call only in the event loop. */
+/* The message `prove`, by which a user records a loop check: a test that a value forced at a transmitter arrives as the tag's
+   value. Call only in the event loop. */
 #ifndef MESSAGE_LOOP_CHECK_MESSAGE_H
 #define MESSAGE_LOOP_CHECK_MESSAGE_H
 #include "loopcheck/loop_checks.h"

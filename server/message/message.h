@@ -105,7 +105,8 @@ struct params_change {
     struct color_scale color_scale;
     double isoline_step; /* difference between adjacent isolines, in the unit of the values; 0: color_scale lists the isolines */
     bool breaks_of_group, breaks_of_limits;
-    bool range_of_group; /* true: the message had `range: null`, which means the group's range */
+    /* true: the message had `range: null`: the colour scale gets the range that the plant file states for the sensor group */
+    bool range_of_group;
     double range_min, range_max;
     enum look look;
     bool dark, strip;
@@ -168,20 +169,22 @@ struct place_request {
 };
 
 struct coverage_request {
-    int group;    /* index of the group whose sensor coverage is assessed; -1: the group shown in the view */
+    int group;    /* index of the group of sensors whose coverage of the surfaces is assessed; -1: the group shown in the view */
     double far_m; /* metres from the nearest sensor beyond which a surface counts as not covered; 0: the default */
 };
 
 struct loop_check_request {
     int tag;
     double expected, tolerance;
-    bool fail; /* true: the loop check is recorded as failed, regardless of the reading */
+    /* true: the user records the loop check (test of a tag with a value forced at its transmitter) as failed, whatever the
+       reading is */
+    bool fail;
     char remark[LOOP_CHECK_REMARK_BYTES];
 };
 
 struct note_request {
     char id[NOTE_ID_BYTES], text[NOTE_TEXT_BYTES], name[ALARM_NAME_BYTES - 24];
-    /* message remove_note: id of the note to remove; message note: id of the note that the new one replaces, or "" */
+    /* message remove_note: `id` is the note to remove; message note: `id` is the note that the new note replaces, "": none */
     int tag, asset; /* index of the tag or asset to which the note is attached; -1: none */
     bool has_position;
     double position_m[3];
@@ -259,8 +262,10 @@ bool message_take_time(const char *name, const char *text, int64_t now_us, int64
 bool params_parse(const struct plant *plant, const json_t *object, struct params_change *out, struct message_error *error);
 struct params_context {
     const struct scene *scene;
-    struct baselines *baselines;     /* stored baselines of the plant; NULL: there are none */
-    const struct snapshot *snapshot; /* readings that a change of parameters may store as a baseline; NULL: there are none */
+    /* store of the plant's baselines (saved readings that differences are shown against); NULL: baselines are not available */
+    struct baselines *baselines;
+    /* present readings, which a change of parameters may save as a baseline; NULL: it may not save any */
+    const struct snapshot *snapshot;
     int64_t now_us;                  /* current UTC time in microseconds, against which times in a query's arguments are checked */
     bool bare;                       /* true (only in queries): the picture has no legend and no clock */
 };
@@ -271,7 +276,8 @@ bool params_apply(const struct params_context *context, const struct params_chan
 bool params_parse_show(const struct plant *plant, const json_t *o, struct params_change *out, struct message_error *error);
 bool params_apply_show(const struct params_context *context, const struct params_change *change, const struct view *before,
                        struct view *view, struct message_error *error);
-/* Stores or removes the baseline that a change names. Call it last, after all checks of the change, because it cannot be undone. */
+/* Saves the present readings as the baseline that the change of parameters names, or removes that baseline. Call it last, after
+   all checks of the change, because it cannot be undone. */
 void params_apply_baseline(const struct params_context *context, const struct params_change *change, struct view *view);
 /* params_parse() and params_apply() call these functions for the members `scale`, `breaks` (limits between colour bands) and
    `isolines`. */

@@ -13,9 +13,11 @@ bool save_tags_parse(const struct plant *plant, const json_t *o, struct message 
 bool accept_places_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 bool restore_tags_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error);
 
-/* Returns `placed`, the answer to `place`, with the positions of the sensors moved on trial; free with mem_free(). */
+/* Returns `placed`, the answer to `place`. It lists the sensors that the user moved to try out other positions, with these
+   positions; free with mem_free(). */
 char *placed_text(const struct plant *plant, const struct place_set *set, uint32_t seq);
-/* Returns `gaps`, the answer to `coverage`, with the surfaces too far from every sensor; free with mem_free(). */
+/* Returns `gaps`, the answer to `coverage`. It says how much of each asset's surface is too far from every sensor, or has no
+   data; free with mem_free(). */
 char *coverage_text(const struct scene *scene, const struct place_set *set, const struct sensor_coverage_answer *answer);
 /* Returns how a message would change the current tag list, `before`, for the client to show and confirm; free with mem_free().
    The message is save_tags (applies the new positions of the sensors in `set`), accept_places or restore_tags (`set` is NULL

@@ -10,7 +10,9 @@
 #include "scene/scene.h"
 
 struct assumed_filter {
-    int asset, group; /* indices in the plant of the asset and the group that limit the selection; -1: any */
+    /* Indices in the plant of an asset and of a group of sensors: only their sensors are selected. -1: sensors of any asset, or
+       of any group. */
+    int asset, group;
     /* glob for the tag's name; a text without * or ? is searched for in the tag's name and description; case-insensitive; empty: any tag */
     char pattern[101];
     double within_m; /* largest distance in metres of the assumed place from the asset's surface; negative: any distance */

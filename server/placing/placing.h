@@ -48,7 +48,7 @@ struct placed {
     enum placed_state state;
 };
 
-struct place_set; /* the sensors that one user has moved on trial, with the new positions */
+struct place_set; /* set of the sensors that one user moves to try out other positions, with these positions; nothing is saved */
 /* Creates a set without moved sensors. The caller destroys it. */
 struct place_set *place_set_create(struct placing *placing);
 /* Cancels the pending requests of the set and frees it. Accepts a pointer to NULL; sets *set to NULL. */
@@ -62,7 +62,8 @@ bool place_set_moves(struct place_set *set, const struct place_move *moves, size
 uint32_t place_set_trial(const struct place_set *set);
 /* *out receives the moved sensors of the set with their results, valid until the set changes. Returns their number. */
 size_t place_set_get(const struct place_set *set, const struct placed **out);
-/* Returns true if geodesic distances of the set's sensors arrived since the last call; the set then has another trial id. */
+/* Returns true if geodesic distances of the set's sensors arrived since the last call. The set's trial (field/trials.h) then
+   has a new id, so views show the field computed with these distances. */
 bool place_set_changed(struct place_set *set);
 
 /* The answer to placing_request_coverage(). client and seq are those of the request. */

@@ -7,7 +7,9 @@
 
 struct sensor_coverage_query {
     const struct scene *scene;
-    const struct trial *trial; /* trial that moves some of the sensors; NULL: all sensors are where the plant has them */
+    /* trial (set of sensor positions that a user tries out) that moves some of the sensors; NULL: all sensors are where the
+       plant file has them */
+    const struct trial *trial;
     int asset, group;
     enum distance_mode mode;
     double reach_m; /* a sensor farther than this from a point does not cover it, in metres; INFINITY: no limit */

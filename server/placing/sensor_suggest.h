@@ -16,7 +16,7 @@ struct suggest_query {
     struct workers *workers;
     const struct scene *scene;
     const char *folder; /* folder of the prepared files */
-    int group, asset;   /* asset: index of the asset; -1: all assets that have sensors of the group at known positions */
+    int group, asset;   /* asset: index of the asset; -1: all assets on which sensors of the group have known positions */
     size_t count;
 };
 

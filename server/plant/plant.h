@@ -131,13 +131,16 @@ struct plant_group {
     double reach_m;    /* distance in metres beyond which a sensor has no influence; INFINITY: no limit */
     unsigned prepared; /* bit mask of the interpolations that plantcast-prep computes (plant/influence.h), including the group's own */
     double disc_m;     /* radius in metres of the disc that represents a sensor in the interpolations harmonic, fin and gp */
-    double ambient;    /* temperature of the surroundings for `fin`, in the group's unit; NaN: not stated */
+    /* temperature of an asset's surroundings, used by the interpolation `fin`, in the group's unit; NaN: the plant file does
+       not state it */
+    double ambient;
     bool directed;     /* true: some tags of the group have a direction (such as the flow of air), which is shown with arrows */
     /* true (key `geodesic: heat`): plantcast-prep also computes distances along the surface by the heat method, as in Kim & Suh */
     bool heat;
     struct plant_gp gp;
-    /* radius in metres of the hot spots for which `show: blind` finds places where no sensor would notice such a spot. At this
-       distance from the spot's centre, its excess temperature has fallen by a factor exp(-1/2) */
+    /* Size of the hot spots that `show: blind` considers: distance in metres from a spot's centre at which its excess
+       temperature has fallen by the factor exp(-1/2). `show: blind` shows how strong a spot of this size must be for a sensor
+       to notice it. */
     double hot_spot_m;
     bool cuts_singles; /* true (key `singles: cut`): plantcast-prep subdivides triangles even of assets with only one sensor of the group */
     enum fill_mode fill;
@@ -350,7 +353,8 @@ struct plant_tag {
     struct tag_scale scale;
     struct expression *expression; /* expression of a derived tag; NULL for other tags */
     struct tag_place place;
-    /* parameters s and o of the interpolation (Algorithm 1 of Kim & Suh, field/field.h): the tag's own values, otherwise the group's */
+    /* parameters of the interpolation, strength s and decay o (Algorithm 1 of Kim & Suh, field/field.h): the tag's own values
+       if its row states any, otherwise those of its group */
     double strength, decay;
     struct tag_validity validity;
     struct tag_alarms alarms;

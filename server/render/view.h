@@ -60,7 +60,8 @@ struct view {
     struct field_params field;
     int colormap;                /* index of the colour map */
     double ramp_interval;        /* width of a colour step in engineering units; 0: continuous */
-    /* engineering values at both ends of the colour map: the group's range unless the client sets other values */
+    /* values, in engineering units, at the two ends of the colour map: the range that the plant file states for the group of
+       sensors, unless the client sets other values */
     double range_min, range_max;
     struct color_scale color_scale;
     enum look look;
@@ -69,7 +70,7 @@ struct view {
     double light_dir[3]; /* unit vector towards the sun, in the plant frame */
     bool dark;           /* true: the backdrop is dark; colours of the field are the same on both backdrops */
     enum directions_look directions;
-    enum language language; /* language of the texts in the overlay, if one is drawn */
+    enum language language; /* language of the texts in the overlay (legend, clock and markers drawn over the picture), if one is drawn */
     bool strip;             /* true: frames get a machine-readable copy of the legend in their lowest rows (legend strip) */
     int environment;        /* index of the environment map: 0: the built-in sky; 1 and up: those of the plant file */
     struct visibility visibility;

@@ -23,7 +23,8 @@ struct encode_stream {
     struct packet *kept[ENCODE_STREAM_KEPT];
     int kept_count;
     size_t kept_bytes, key_bytes;
-    /* members: number of clients in the stream; present: number of members that have a ticket in the group being planned */
+    /* members: number of clients in the stream; present: number of these that have a ticket in the group of requests that is
+       being planned */
     size_t members, present;
 };
 

@@ -14,7 +14,8 @@ bool remote_history_json(struct core_history *core, const struct history_query *
    time buckets (true) or for single values (false). */
 bool remote_history_csv(struct core_history *core, const struct history_query *query, const char *tag, bool first, bool *buckets,
                         struct text *out);
-/* Appends the complete answer to a query for gaps, drifting sensors or the journal. */
+/* Appends the core's complete answer to a query for the times when nothing was recorded, for drifting sensors, or for the alarm
+   journal. */
 bool remote_history_whole(struct core_history *core, const struct plant *plant, const struct history_query *query, struct text *out);
 
 #endif

@@ -22,9 +22,10 @@ struct render_service_params {
     const struct scene *scene;
     struct store *store;
     const struct plant_clock *clock;       /* clock of the readings */
-    struct baselines *baselines;           /* store of baselines; NULL: differences to baselines cannot be shown */
+    struct baselines *baselines;           /* store of baselines (saved readings); NULL: differences from baselines cannot be shown */
     struct snapshot_cache *snapshot_cache; /* cache of readings of past instants; NULL: past instants cannot be shown */
-    struct trials *trials;                 /* registry of trial layouts of the sensors; NULL: trials cannot be shown */
+    /* registry of trials (sets of sensor positions that users try out, field/trials.h); NULL: trials cannot be shown */
+    struct trials *trials;
     struct workers *workers;
     size_t memory_bytes;      /* limit on the daemon's memory in bytes, models included; 0: chosen for the machine */
     const char *h264_library; /* name of the libavcodec encoder; NULL: the default one */

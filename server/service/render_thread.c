@@ -333,7 +333,8 @@ static void long_job_leave(struct render_thread *thread)
    steps (a long job). */
 static void choose_other(struct request_group *group)
 {
-    /* one frame answers all tickets (requests whose drawing has begun) of the group, so all get the same tier */
+    /* one frame answers all tickets (requests whose drawing has begun) of the group, so all get the same tier: preview or
+       refined */
     bool moving = group->tickets[0].request.or_moving;
     for (size_t i = 0; i < group->count; i++) {
         struct frame_request *request = &group->tickets[i].request;

@@ -124,7 +124,8 @@ void session_on_pong(struct session *session, int64_t rtt_ns, int64_t now_ns);
    is valid until the saved views change. Returns NULL with *error, which names the member `about`, if there is no such view. */
 const char *session_scope_find_view(const struct plant_services *services, enum role role, const struct token_holder *holder,
                                     const char *id, const char *about, struct message_error *error);
-/* Returns the plant file's views that a narrowed token allows, as a JSON array of {id, title}. The caller owns it. */
+/* Returns, as a JSON array of {id, title}, those views of the plant file that the user's narrowed token allows (a token that
+   allows only some views). The caller owns the array. */
 json_t *session_scope_views(const struct session *session);
 
 /* --- texts ------------------------------------------------------------------------------------------------------------ */
@@ -140,7 +141,7 @@ void session_say(struct session *session, const char *text);
 
 /* --- picks (what is at a pixel) -------------------------------------------------------------------------------------- */
 
-/* Returns true if a pick is due, with the query for the render service in *query. */
+/* Returns true if a pick (query for what is at a pixel) waits to be sent to the render service, and writes it to *query. */
 bool session_next_pick(struct session *session, struct pick_query *query);
 /* Queues the answer to a pick (what is at a pixel) for the client. */
 void session_on_pick(struct session *session, const struct pick_answer *answer);
@@ -196,7 +197,8 @@ void session_tile_tell(struct session *session, const bool *there, const int64_t
 
 /* --- placing sensors -------------------------------------------------------------------------------------------------- */
 
-/* Requests a new picture of the sensors that the engineer moved on trial, now that their geodesic distances are computed. */
+/* Requests a new picture, because the geodesic distances of the sensors that the engineer is trying out at other positions are
+   now computed. */
 void session_on_placed(struct session *session, int64_t now_ns);
 /* Removes from the session a tag list that is to be activated by a reload, and returns it; the caller owns it. NULL: there is none. */
 struct tag_save *session_take_save(struct session *session);

@@ -33,7 +33,9 @@ static const struct encoder_params STILL = { .quality = 92, .full_chroma = true 
 static const struct encoder_params LOSSLESS = { .quality = 100, .full_chroma = true };
 /* maximum time between two camera messages of one movement */
 static const int64_t CAMERA_INTERVAL_NS = 120 * NS_PER_MS;
-enum { SMALL_PX = 128 }; /* a side of a picture of at most this many pixels is not shrunk by the quality ladder */
+/* a side of a picture that has at most this many pixels is not reduced further when the quality ladder
+   (pacing/quality_ladder.h) reduces the picture */
+enum { SMALL_PX = 128 };
 
 /* Handles the answer that the requested frame could not be drawn. A session that already shows a frame keeps it. A new session
    is closed, because it would show nothing. */

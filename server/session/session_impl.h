@@ -31,7 +31,8 @@ char *session_wall_what(const struct message *message);
 void session_record_action(const struct session *session, const char *event, const char *what, const char *answer);
 /* Records that a tag list is being activated: by save_tags with `moved` moved sensors, by accept_places or by restore_tags. */
 void session_record_save(const struct session *session, const struct message *message, size_t moved);
-/* If the message's parameters save or remove baselines for all users, records that in the audit trail. */
+/* If the message's parameters save or remove baselines (stored readings that differences are shown against) for all users,
+   records that in the audit trail. */
 void session_record_params(const struct session *session, const struct message *message);
 /* Records in the audit trail that an action could not be written to disk. */
 void session_record_not_kept(const struct session *session, const char *event, const char *what, const char *why);
@@ -178,7 +179,8 @@ bool session_on_place(struct session *session, const struct message *message, in
 bool session_ask_coverage(struct session *session, const struct message *message, struct message_error *error);
 bool session_save_tags(struct session *session, const struct message *message, struct message_error *error);
 bool session_check_loop(struct session *session, const struct message *message, struct message_error *error);
-/* Forgets the sensors that the engineer moved on trial; afterwards session->placement has no pointer into the plant. */
+/* Forgets the sensors that the engineer moved to try out other positions; afterwards session->placement has no pointer into the
+   plant. */
 void session_place_leave(struct session *session);
 
 #endif

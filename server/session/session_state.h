@@ -107,7 +107,8 @@ struct frame_delivery {
     struct encoded_frame *ready;
     bool measured;                   /* true: the client acknowledged frame pacer.acked, and session_take_shown() has not returned it yet */
     struct depth_grid *depth[2];     /* newest depth grids sent to the client, of a frame or of both halves of a split view; NULL: none */
-    /* [step]: number of sessions, this one included, that show this view and need that step of the quality ladder */
+    /* [step]: number of sessions, this one included, that show this view and for which the quality ladder
+       (pacing/quality_ladder.h) chose this step */
     int steps[QUALITY_LADDER_STEPS];
     /* step of the quality ladder that all viewers of this view share, so that a frame is encoded once for all; negative: each
        viewer uses its own step */
@@ -167,7 +168,9 @@ struct owed_texts {
     /* sequence numbers of the last changes sent to the client, one each for named views, notes, messages of desks to walls, and pointers */
     uint64_t views_sent, notes_sent, walls_sent, pointers_sent;
     int64_t notes_at_us;                /* instant for which notes were last sent, UTC microseconds; 0: the present */
-    uint64_t loop_checks_sent;          /* sequence number of the newest loop check that was sent */
+    /* sequence number of the newest loop check (test of a tag with a value forced at its transmitter) that was sent to the
+       client */
+    uint64_t loop_checks_sent;
     int64_t told_at_us;                 /* instant of the last `time` message that the client was sent, UTC microseconds; 0: the present */
     bool told_beginning;                /* true: the last `time` message included the beginning of recorded history */
     char *replies[SESSION_MAX_REPLIES]; /* answers to the client's messages that are still to be sent, oldest first */
@@ -176,7 +179,7 @@ struct owed_texts {
 
 /* Sensors whose positions an engineer is trying out (session_place.c). */
 struct session_placement {
-    struct place_set *set; /* trial positions of the sensors that this session moved; NULL: none was moved */
+    struct place_set *set; /* positions of the sensors that this session moved to try them out; NULL: none was moved */
     uint32_t seq;          /* sequence number of the newest `place` message of the client */
     struct tag_save *save; /* tag list with the engineer's changes, waiting to be saved (session_take_save); NULL: none */
 };

@@ -28,7 +28,9 @@
 struct surface;
 
 struct surface_params { /* all zero: the program chooses the values from the model */
-    double tolerance_m; /* largest gap in metres that is closed; if the program chooses it, it is smaller at thin parts (parts.h) */
+    /* largest gap between faces, in metres, that repair closes; if the program chooses the limit, it is smaller at thin parts
+       (parts.h) */
+    double tolerance_m;
     double spacing_m;   /* maximum length in metres of an edge after sampling */
     char *why;          /* buffer of SURFACE_WHY_BYTES for the reason if no surface can be built; NULL: the reason is logged instead */
 };
@@ -38,8 +40,10 @@ struct surface_report {
     double size_m; /* size of the model: length in metres of the diagonal of its main part (base/math/gap_split.h) */
     double tolerance_m, spacing_m, time_m2; /* tolerance and spacing that were used; time_m2: diffusion time t of the heat method */
     size_t triangles, welded_vertices, degenerate_triangles, repeated_triangles;
-    size_t border_edges, border_edges_after; /* number of edges with one face, before and after gaps were bridged */
-    size_t components, components_after;     /* number of connected components, before and after gaps were bridged */
+    /* number of edges with only one face, before and after repair bridged the gaps between the model's faces */
+    size_t border_edges, border_edges_after;
+    /* number of connected components of the surface, before and after repair bridged the gaps between the model's faces */
+    size_t components, components_after;
     /* number of points that repair joined to another point of the surface, to close a crack or a contact between parts */
     size_t bridges;
     double longest_bridge_m;

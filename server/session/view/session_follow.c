@@ -35,7 +35,8 @@ void session_leader_gone(struct session *session, int64_t now_ns)
     uint64_t called = session->following.leader->identity.number;
     session->following.own_view = session->view;
     session_inherit(session, session->following.leader);
-    /* stops using the trial sensor positions of the leader's view, which are freed together with the leader's session */
+    /* stops using the positions at which the leader's user tries out sensors, because they are freed together with the leader's
+       session */
     view_set_trial(&session->view, 0);
     session_follow(session, NULL, now_ns);
     session->following.left = called;

@@ -39,8 +39,8 @@ const char *session_scope_find_view(const struct plant_services *services, enum 
 static bool read_view(const struct session *session, const char *id, struct view *view, struct message_error *error)
 {
     const struct session_context *context = session->context;
-    /* bare: the view is read without present readings. With them, opening a view could save a baseline, which requires the role
-       operator */
+    /* bare: the saved view is parsed without the present readings. With them, parsing could save a baseline (stored readings),
+       which requires the role operator */
     const struct params_context params = { .scene = context->services->scene, .baselines = context->services->baselines, .bare = true };
     struct view read;
     const char *address = session_scope_find_view(context->services, session->identity.role, &session->identity.holder, id, "named", error);

@@ -6,7 +6,8 @@
 #include "surface/repair/interior.h"
 
 struct island {                /* island: group of visible triangles connected by points; groups are indexed by their lowest point */
-    double seen_m2, hidden_m2; /* seen_m2: area of the group; hidden_m2: area of the hidden triangles that touch the group */
+    /* seen_m2: area of the group in square metres; hidden_m2: area of the hidden triangles that touch the group */
+    double seen_m2, hidden_m2;
     bool free;                 /* true: some point of the group touches no hidden triangle, so the group stays visible */
 };
 

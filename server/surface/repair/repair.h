@@ -16,7 +16,9 @@ struct repair_report {
     struct crack_bridge *made; /* all bridges; free with mem_free */
     size_t made_count, made_capacity;
     double longest_m;
-    int k;               /* largest number of neighbours per point that the search for gaps requested (point_cloud.h); -1: out of memory */
+    /* largest number of neighbours per point that the search for gaps between faces requested (point_cloud.h); -1: out of
+       memory */
+    int k;
     uint32_t *crossings; /* indices of points where a part intersects itself; free with mem_free */
     size_t crossing_count, crossing_capacity;
 };
