@@ -42,7 +42,7 @@ const placeOf = (point) => drawnAt(page, point);
 test('a button freezes the values, and lets them go on', options, async () => {
     await page.waitForFunction(() => globalThis.plantcast.session.model.readings[0].value === 80);
     const since = await page.evaluate(() => globalThis.plantcast.session.clockUs());
-    // waits until TI-1 has been 80 for 5 s, so that the instant being held lies within the recorded history
+    // waits until TI-1 has been 80 for 5 s, so that the last seconds, one of which the held picture shows, have this value
     await page.waitForFunction((us) => globalThis.plantcast.session.clockUs() > us + 5e6, since);
     await page.locator('#hold').click();
     await waitForHealth(page, 'past');
