@@ -6,7 +6,9 @@ layout(std140, binding = 1) uniform Environment {
     vec4 irradiance_terms[9];
 };
 layout(binding = 8) uniform sampler3D mirrored_map; // octahedral map; third coordinate: roughness
-layout(binding = 9) uniform sampler2D brdf_map;     // lookup table: scale and bias of F0, by cosine to the viewer and roughness
+// lookup table by cosine to the viewer and by roughness: the reflected fraction is x * F0 + y (F0: reflectance at normal
+// incidence)
+layout(binding = 9) uniform sampler2D brdf_map;
 
 // Returns the light that a white, matt surface with the normal n reflects (irradiance divided by pi).
 vec3 sky_irradiance(vec3 n)

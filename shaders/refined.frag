@@ -12,8 +12,8 @@ layout(location = 0) centroid in vec3 place;
 layout(location = 1) centroid in vec3 surface_normal;
 layout(location = 2) centroid in vec4 uv; // first and second texture coordinates
 layout(location = 3) centroid in vec4 tint;
-// light computed in advance by bake.comp: x: ambient light; y: openness (visible fraction of the sky); z: the constant 1 as
-// interpolated to the centroid
+// light computed in advance by bake.comp: x: ambient light; y: openness (visible fraction of the sky). z: refined.vert writes
+// 1; what arrives here differs from 1 by the driver's interpolation error, which dividing by z removes
 layout(location = 4) centroid in vec3 sky;
 layout(location = 5) centroid in FIELD_TYPE field;
 #ifdef PIXEL_FIELD

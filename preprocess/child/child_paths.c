@@ -88,8 +88,8 @@ static void add_settings(struct child_paths *paths)
         closedir(dir);
 }
 
-/* Allows the files that programs in a folder such as ~/.venv/bin load: the files and folders listed in `parts` in its parent
- * folder. Allowing the whole parent folder, such as ~/.local, would be too much. */
+/* Allows what programs in a folder such as ~/.venv/bin load from the folder above it: only the entries of ~/.venv named in
+   `parts`. Allowing the whole folder above would be too much: for ~/.local/bin, that is ~/.local. */
 static void add_installation(struct child_paths *paths, const char *programs)
 {
     static const char *const parts[] = { "lib", "lib64", "libexec", "versions", "version", "pyvenv.cfg" };

@@ -201,7 +201,7 @@ static void compare_sensors(struct diff *diff, struct asset_pair *pair)
 }
 
 /* Searches the new model for a node with another name that has the old asset's shape at the old position. If there is one,
- * writes its name to `why`; otherwise leaves `why` unchanged, which suggests a similar name. */
+   writes its name to `why`, in place of a guess ("did you mean ...") by similar names. Otherwise leaves `why` unchanged. */
 static void find_renamed(struct diff *diff, const struct asset_pair *pair, const struct diff_side_asset *asset, double tolerance_m,
                          char *why)
 {

@@ -7,8 +7,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* width of the widest gap that is closed, relative to the diagonal of the asset's main part (without parts far from the rest)
-   */
+/* width of the widest gap that is closed, relative to the diagonal of the asset's main part, which leaves out pieces far from
+   the rest (base/math/gap_split.h) */
 #define GAPS_OF_SIZE 3e-4
 #define GAPS_MOST_M 0.002 /* width of the widest gap that is closed, in metres; the smaller of both limits applies */
 

@@ -18,8 +18,8 @@
 /* Size in metres of a model above which an asset's origin is the median of its vertices: at the far ends of such a model,
    single-precision positions would be accurate to only half a millimetre. */
 #define COARSE_SIZE_M 1e4
-/* largest distance in metres, along each axis, between the nodes that a sensor names at which the sensor's position still
-   counts as unambiguous */
+/* If a sensor names several nodes, its position counts as unambiguous as long as the nodes are at most this far apart along
+   each axis, metres. */
 #define SAME_PLACE_M 1e-3
 #define SHOWN_NODES 6
 /* smallest accepted size of a model in metres: a smaller one certainly has the wrong unit, and fourth powers of its lengths

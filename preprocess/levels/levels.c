@@ -22,9 +22,9 @@
 #define FAR_WORTH 0.9
 #define STEP 1.4       /* minimum factor by which the error grows from one level to the next coarser one */
 #define STEP_SMALL 1.7 /* minimum factor by which the error grows after a level whose error is above LEVELS_SMALL */
-/* Factor on a level's error. Events (a part becomes coarser or is omitted) with an error up to the product are included in a
-   near level too, so that the next level differs more. After a rejected level, the next attempt has at least the product as its
-   error. */
+/* A near level with the error e also includes all events (a part becomes coarser or is omitted) with an error up to WAIT * e,
+   so that the next level differs more. After a rejected level with the error e, the next attempt has an error of at least WAIT
+   * e. */
 #define WAIT 1.1
 /* maximum error caused by omitting a part, in multiples of the level's error; if the omission causes more, the part is restored */
 #define MISSED 1.05f

@@ -11,7 +11,8 @@
 #include "plant/exact.h"
 #include "plant/singles.h"
 
-/* maximum amount that may be subtracted from an error for the allowed displacement of a point, as a share of the value range */
+/* maximum amount, as a share of the value range, that is subtracted from an error because a coarse level may show the value of
+   a point up to slack_m away */
 #define MAX_SLACK (1 / 255.0)
 /* Errors of Algorithm 1 of Kim & Suh are not measured for groups with more sensors: each sensor has so small a weight there
    that these errors are far below those of Shepard interpolation. */

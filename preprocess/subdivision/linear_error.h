@@ -68,11 +68,12 @@ double linear_error_rim_of(const struct linear_error *linear, const struct inter
  * nearest point where a group's data ends. */
 double linear_error_nearest_of(const struct linear_error *linear, const struct interp_norm *norms);
 /* Return the interpolation error at a point whose sample is `between` or `inside`, as a share of the range.
- * linear_error_on_edge() compares it with the linear interpolation at fraction t between the samples of the edge's ends;
- * linear_error_in_triangle() with three corners' samples interpolated by `weights`. modes: kinds of distance to include. The
- * change of the value within slack_m, at most one colour step, is subtracted from the error. Farther than wide_m outside a
- * group's data, the error is 0. Nearer, it counts, because an edge or triangle that wide would carry wrong values into the area
- * with data. */
+   linear_error_on_edge() compares it with the linear interpolation at fraction t between the samples of the edge's ends;
+   linear_error_in_triangle() with three corners' samples interpolated by `weights`. modes: kinds of distance to include.
+   slack_m: the drawn point may be this far from the right one, so the change of the value over that distance (at most one
+   colour step) is subtracted from the error. wide_m: about the size of the edge or triangle. At points outside the area where a
+   group has data, the error counts only up to the distance wide_m from that area, because the edge or triangle may reach into
+   it; farther away the error is 0. */
 enum linear_error_modes {
     LINEAR_ERROR_GEODESIC = 1 << DISTANCE_GEODESIC,
     LINEAR_ERROR_EUCLIDEAN = 1 << DISTANCE_EUCLIDEAN,

@@ -108,9 +108,9 @@ static void to_doubles(const float point[3], double at[3])
         at[i] = (double)point[i];
 }
 
-/* Finds the surface point that a sample point projects onto. In a coarser level of detail, searches the sample point's
- * connected component first, then all others: a slightly protruding point may belong to the component that hides the sample
- * point's own. */
+/* Finds the surface point that a sample point projects onto. In a coarser level of detail, first searches only the connected
+   component that the sample point is on, then all others: if the finest surface there is hidden by another component, the
+   sample point may protrude from that one and shows its values. */
 static bool search(const struct origin_sight *sight, const double at[3], struct surface_point *hit)
 {
     const struct subdiv *subdiv = sight->subdiv;

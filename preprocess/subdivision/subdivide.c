@@ -41,8 +41,8 @@
 #define FINEST_GROWTH 2.0
 #define FINEST_GROWTH_TRIS 100000.0
 #define WORTH 0.95 /* a coarser level is dropped if it would need more than this share of the next finer level's triangles */
-/* the same share as WORTH, for at least MANY_SENSORS, whose distances then take up most of a file, or if the finest level
-   reached its triangle limit */
+/* used in place of WORTH with at least MANY_SENSORS sensors, whose distances then take up most of a file, or if the finest
+   level reached its triangle limit */
 #define WORTH_MANY 0.5
 #define MANY_SENSORS 128
 /* smallest number of triangles of a level whose size is first estimated from a sample; samples of smaller levels are unreliable */
@@ -58,8 +58,8 @@
    error_m */
 #define JUMP_WIDTH 8
 #define ON_SURFACE 0.25 /* distance from the surface, in multiples of the tolerance, up to which a point counts as on it */
-/* distance, in multiples of the level's error_m, up to which a coarser level of detail may show the value of another point in
-   place of a point's own */
+/* A coarser level of detail may show at a point the value of another surface point at most this far away, in multiples of the
+   level's error_m. */
 #define SLACK 0.7
 
 /* --- cutting -------------------------------------------------------------------------------------------------------------- */

@@ -30,7 +30,7 @@ struct fleet_answer { /* response of one connection */
     size_t bytes, sent;
 };
 
-/* libwebsockets context, global because a signal handler gets no argument */
+/* libwebsockets context; global, so that the signal handler, which gets no argument, can wake the server */
 static struct lws_context *_Atomic serving;
 static atomic_bool ending;
 

@@ -118,7 +118,8 @@ static void note_failure(struct fleet_poll *poll, const struct fleet_request *re
     snprintf(known->why, sizeof(known->why), "%s", why);
 }
 
-/* Returns the nanoseconds until the next request of this kind. A busy server can lengthen the pause with a Retry-After header. */
+/* Returns the nanoseconds until the plant's server is next asked for the same thing (metrics or picture): the interval in the
+   fleet file, or up to an hour if a busy server asked for more with a Retry-After header. */
 static int64_t pause_ns(const struct fleet_poll *poll, const struct fleet_request *request)
 {
     const struct fleet_plant *plant = &poll->file->plants[request->plant];

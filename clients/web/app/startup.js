@@ -11,7 +11,7 @@ import { chooseTheme } from './common/theme.js';
 import { Viewport } from './viewport/viewport.js';
 
 const query = new URLSearchParams(location.search);
-// if `wall` in the URL is the id of a wall, not a size in inches and metres, opens that wall's page
+// if `wall` in the URL is the id of a video wall, not a size in inches and metres, opens that wall's page
 if (query.has('wall') && !/^[\d.,]*$/.test(query.get('wall'))) {
     location.replace(`wall.html${location.search}`);
     await new Promise(() => {}); // never resolves, because the browser is leaving for that page

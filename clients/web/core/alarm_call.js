@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Selects the alarm whose position a wall's pane shows instead of its view. The unacknowledged alarms take turns: active before
-// returned, then by urgency and age. During a flood of alarms none is selected, because a constantly changing picture would
-// help nobody.
+// Selects the alarm that a pane of a video wall shows: during alarms, the pane shows the position of an alarm instead of its
+// own view. The unacknowledged alarms take turns: active before returned, then by urgency and age. During a flood of alarms
+// none is selected, because a constantly changing picture would help nobody.
 import { isGone } from './alarms.js';
 
 export const TURN_MS = 10000;  // minimum time in milliseconds between two changes of the picture

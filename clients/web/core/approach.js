@@ -8,11 +8,12 @@ import { along, dot, length, subtract, unit } from './vector.js';
 // of the sensor's equipment.
 const PART = 1.1, LONG_PART = 0.7;
 const LEAST_M = 0.2, MOST_M = 16; // minimum and maximum distance of the camera in plants of usual size, in metres
-// bounds of the camera's distance from a sensor in very small and very large plants, as fractions of the plant's diagonal
+// minimum and maximum distance of the camera in very small and very large plants, as fractions of the plant's diagonal
 const LEAST_PART = 1 / 200, MOST_PART = 1 / 20;
 const FILL = 0.42; // fraction of the picture that the equipment's box fills, unless the bounds of the distance prevent it
-// A side of the equipment is narrow if it fills FILL of the picture only from less than NARROW times the largest distance of
-// the first FRONT cameras. Narrow sides are tried last because they show little: of a pump, only the motor's fan cover.
+// A side of the equipment is narrow if the camera would have to come very near for that side to fill the fraction FILL of the
+// picture: nearer than NARROW times the largest distance of the first FRONT cameras. Narrow sides are tried last because they
+// show little: of a pump, only the motor's fan cover.
 const NARROW = 0.75, FRONT = 9;
 // A plate seen edge-on is a line, although its bounding rectangle may be large. Sides from which the equipment's box covers
 // less than EDGE times its largest silhouette are therefore also tried last.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Thins out sensor markers where they are dense (protocol/LABELS.md).
 
-// At most MOST markers are drawn within NEAR CSS pixels (more on a wall) of each other. For a marker that was drawn in the
-// previous picture, NEAR is multiplied by HELD, so that such a marker tends to stay.
+// At most MOST markers are drawn within NEAR CSS pixels (more on a video wall) of each other. For a marker that was drawn in
+// the previous picture, NEAR is multiplied by HELD, so that such a marker tends to stay.
 const MOST = 6, NEAR = 30, HELD = 0.8;
 
 // items: { x, y, depth, occluded, kept (always drawn), held (drawn in the previous picture) }. Returns the items to draw, in the same

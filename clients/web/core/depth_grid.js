@@ -95,9 +95,9 @@ class Masks {
         this.row = new Uint8Array(maskSide); // mask bits of the row of pixels above, from which the bits of the present row are predicted
     }
 
-    // For a cell `i` that shows two surfaces, says which one (1: the near, 0: the far) its neighbour's farthest surface
-    // continues: the one whose depth code is nearer. Returns null if the neighbour also shows two surfaces and so has a mask of
-    // its own.
+    // Compares cell `i`, which shows two surfaces, with a neighbour. Returns 1 if the neighbour's surface continues the near
+    // surface of cell `i`, 0 if it continues the far one: the one with the nearer depth code. Returns null if the neighbour
+    // also shows two surfaces and so has a mask of its own.
     sideOf(neighbour, i) {
         const { near, far, back } = this;
         if (far[neighbour] >= 0)

@@ -12,11 +12,12 @@ const MAX_TAN = Math.tan(60 * RADIANS), LEAST_TAN = 0.02;
 const MARGIN = 1.15;
 // MOST_PX: maximum number of pixels of a picture that is requested; STEP_PX: step along a ray in hitOf(), in pixels
 const MOST_PX = 4e6, STEP_PX = 2;
-// largest plausible resolution of an eye, in pixels per tangent of 1; larger values from a device are replaced by this one
+// largest plausible resolution of an eye's picture, as the number of pixels over which the tangent of the angle to the view
+// direction grows by 1; larger values from a device are replaced by this one
 const MOST_DENSITY = 4096;
 const NEAREST_M = 0.05, FARTHEST_M = 1000; // ends of a ray
 export const STAND_M = 1.6; // height of the eyes above the floor in metres, for devices that do not report it
-const ROOM_M = 2.5; // distance in metres between the plant and a user who starts
+const ROOM_M = 2.5; // maximum distance in metres from the plant at which a user begins whose camera was outside it
 
 const turned = (axes, [x, y, z]) => add(add(scale(axes[0], x), scale(axes[1], y)), scale(axes[2], z));
 export const pointOf = (rig, point) => add(rig.at, turned(rig.axes, point));

@@ -2,12 +2,13 @@
 // Places the pins of shift notes next to their points, where they cover neither legends nor alarm rings nor other pins.
 import { meets } from './labels.js';
 
-// length of a pin's stem in CSS pixels (larger on a wall) at the pin's usual position, above and to the right of its point
+// length of a pin's stem in CSS pixels (larger on a video wall) at the pin's usual position, above and to the right of its
+// point
 export const STEM = 9;
 const GAP = 2; // units: space between two pins
 const ROWS = 40; // number of heights to try for a pin that must cover alarm rings or markers
-// largest distance in CSS pixels (larger on a wall) that a pin moves to leave a marker without an alarm uncovered; rather than
-// move farther, it covers the marker
+// largest distance in CSS pixels (larger on a video wall) that a pin moves from its usual position to leave a marker without an
+// alarm uncovered; rather than move farther, it covers the marker
 const FAR = 150;
 
 const enlarge = ({ left, right, top, bottom }, by) => ({ left: left - by, right: right + by, top: top - by, bottom: bottom + by });

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Computes size, brightness and layout of the page on a control room's wall, so that text is readable from where people sit.
+// Computes size, brightness and layout of the page on a control room's video wall, so that text is readable from where people
+// sit.
 
 // visual angle of a capital letter's height. ISO 9241-303: a capital letter is comfortable to read from 20 minutes of arc on; it needs at
 // least 16.
 export const MINUTES = 16;
 const CAPITAL = 0.72;  // height of a capital letter, relative to the font size
-const SMALLEST_PX = 12.5; // minimum font size of the page in pixels, before the page is scaled for a wall
+const SMALLEST_PX = 12.5; // minimum font size of the page in pixels, before the page is enlarged for a video wall
 export const USUAL = { inches: 55, metres: 3 };
 
 // Parses ?wall, ?wall=65 (inches of the screen's diagonal), ?wall=65,4 (and metres of distance). Returns null if there is no ?wall.
@@ -39,7 +40,8 @@ export function wallFit(wall, screen, { width, height }, least = LEAST) {
     return { scale, metres: scale < needed ? (wall.metres * scale) / needed : wall.metres };
 }
 
-// All displays of a wall reconnect at the same time, so each waits for a random time up to this many milliseconds.
+// All displays of a video wall lose the server at the same time, so each waits for a random time up to this many milliseconds
+// before it reconnects.
 export const SPREAD_MS = 2000;
 
 // Returns a display's brightness: 1, or less within its dimming hours. minute: minute of the day; calls true: an unacknowledged
@@ -50,8 +52,8 @@ export function brightness(dim, minute, calls) {
     return within && !calls ? percent / 100 : 1;
 }
 
-// Offsets [right, down] in pixels for the content of a wall. It moves from one to the next, by the plant's clock, to prevent
-// burn-in.
+// Offsets [right, down] in pixels for the content of a video wall. To prevent burn-in, the content moves from one offset to the
+// next, by the plant's clock.
 const SHIFT_US = 180e6, SHIFTS = [[0, 0], [2, 1], [3, -1], [1, -3], [-1, -2], [-3, 0], [-2, 2], [0, 3]];
 export const burnShift = (us) => SHIFTS[Math.floor(us / SHIFT_US) % SHIFTS.length] ?? SHIFTS[0];
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reloads a wall's page whose main thread hangs. This code runs in a frame of that page and waits for a message from the page's
-// worker (app/common/watchdog_worker.js). It then makes the top window load keeper.html in place of the page. The page's own
-// URL would load in the hanging process. Chromium loads keeper.html in another process, which then loads the page.
+// Reloads the page on a video wall when its main thread hangs. This code runs in a frame of that page and waits for a message
+// from the page's worker (app/common/watchdog_worker.js). It then makes the top window load keeper.html in place of the page:
+// Chromium loads keeper.html in another process, which then loads the page. If the top window loaded the page's own URL at
+// once, that would happen in the hanging process.
 'use strict';
 
-// retry interval while the server does not answer: loading a page now would end on the browser's error page, from which this
-// code cannot return
+// milliseconds between attempts while the server does not answer. Loading the page without an answer would end on the browser's
+// error page, where this code does not run any more.
 const RETRY_MS = 5000;
 const ENDED_MS = 2000;
 

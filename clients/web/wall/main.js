@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The page of one display of a wall: panes in a grid, one session with the server for texts and alarms, and a warning when the server is
-// silent.
+// The page of one display of a video wall: panes (areas with a view, a trend, alarms, ...) in a grid, one session with the
+// server for texts and alarms, and a warning when the server is silent.
 import { AlarmCall } from '../core/alarm_call.js';
 import { Connection } from '../core/connection.js';
 import { zoneClock } from '../core/format.js';

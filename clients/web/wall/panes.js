@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The panes of a wall's display, by kind. Each is { element, tick(now) }. Panes with views and trends contain the normal page in an iframe.
+// The kinds of panes (areas) on a video wall's display. Each pane is { element, tick(now) }. Panes with views and trends
+// contain the normal page in an iframe.
 import { byEquipment } from '../core/alarm_call.js';
 import { isGone, isWaiting } from '../core/alarms.js';
 import { ageText, decimalsFor, numberText, qualityText, quantityText, unitText, zoneClock } from '../core/format.js';

@@ -4,7 +4,8 @@
 import { DecodeQueue } from '../core/decode_queue.js';
 import { Session } from '../core/session.js';
 
-// EARLY_MS: how many milliseconds early a picture may be shown, because the screen's next refresh is 17 ms later
+// EARLY_MS: how many milliseconds before its instant a picture may be shown: at the screen's next refresh, about 17 ms later,
+// it would be later than its instant by more than that
 const PING_MS = 2000, CLOCK_MS = 60000, EARLY_MS = 4;
 
 export class TileSession extends Session {

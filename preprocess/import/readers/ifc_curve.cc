@@ -97,8 +97,8 @@ std::vector<curve_piece> indexed(const ifc_model &in, const entity &curve)
     return out;
 }
 
-/* Returns the parameter, in the curve's units, given by an IfcTrimmingSelect, which holds a parameter, a point or both.
- * by_point: the file prefers the point. */
+/* Returns where a curve is trimmed, as a parameter in the curve's units. An IfcTrimmingSelect gives a parameter, a point on the
+   curve, or both. by_point: if both are given, uses the point. */
 double trim_at(const ifc_model &in, const curve_piece &basis, const value &select, bool by_point, double per_unit)
 {
     const value *parameter = nullptr, *point = nullptr;

@@ -32,8 +32,8 @@ namespace ifc
 namespace
 {
 
-/* distance in millimetres that the prism that replaces a half space with a boundary extends to either side of the half space's
-   plane */
+/* a half space with a boundary is replaced by a prism; half its height in millimetres: the prism extends this far to both sides
+   of the half space's plane */
 constexpr double FAR_MM = 1e6;
 
 /* Calls build(face) for each face of a profile. Returns a compound of the results, or the result itself if there is only one face. */

@@ -7,7 +7,8 @@ import { say } from '../../core/words.js';
 import { clock } from '../common/clock.js';
 import { byId, make, setText, setVariable } from '../common/dom.js';
 
-export const BEHIND_MS = 500; // delay of the picture behind the camera, in milliseconds, above which the status bar mentions it
+// age in milliseconds of the oldest camera move whose picture is not drawn yet above which the status bar mentions the delay
+export const BEHIND_MS = 500;
 
 export class Status {
     // onFreshness(isFresh) is called when the server falls silent (isFresh false: shown values may be outdated), and when its messages

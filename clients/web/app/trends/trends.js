@@ -22,9 +22,9 @@ const EXAMPLES = ['minutes', 'hours', 'today', 'yesterday', 'night'];
 const MOVES = ['earlier', 'later', 'in', 'out', 'back'];
 const MOST = LOOKS.light.lines.length, UNITS_PER_PLOT = 2, FRESH_MS = 5000, NOW_MS = 1000, SETTLED_MS = 250, PAN = 0.5, ZOOM = 2;
 const ALARM_ROWS = 2000, MATCHES = 30, MOST_BACK = 50, ALMOST_US = 2e6;
-const WALL_TEXT = 13; // minimum font size of a wall's charts in units of the page: 16 minutes of arc (wall.js)
+const WALL_TEXT = 13; // minimum font size of charts on a video wall, in units of the page: 16 minutes of arc (wall.js)
 const HEAD_PX = 24, ROW_PX = 22; // heights in the table
-// true: charts fill the space that the table leaves in a wall's pane or in a phone's sheet
+// true: charts fill the space that the table leaves, in a video wall's trend pane or in a phone's sheet
 const fills = () => document.body.classList.contains('pane-trend') || phone.matches;
 
 // Returns the height in pixels of each of `count` charts next to a table of `rows` rows.
@@ -62,7 +62,7 @@ export class Trends {
         Object.assign(this, { page, session, tags: [], plots: [], focus: null, isAsking: false });
         Object.assign(this, { spanS: newSpanS(null), fixed: null, before: [] });
         this.unread = null; // the text in the range field, if it was not understood
-        this.isChosen = false; // true: a user or a wall has chosen the time range; false: it is the default
+        this.isChosen = false; // true: a user or a video wall's trend pane has set the time range; false: it is the default
         this.unknown = []; // names in the trend's list that are not tags of this plant
         this.undrawn = []; // names of tags that are not drawn, because the trend already has its maximum number of tags
         this.series = new Map(); // tag name -> its recorded series; empty until the server has answered
@@ -269,7 +269,7 @@ export class Trends {
         return !this.fixed || this.fixed[1] > this.nowUs - FRESH_MS * 1000;
     }
 
-    // Sets the time span of a trend that is being opened, unless a user or a wall has chosen one.
+    // Sets the time span of a trend that is being opened, unless a user or a video wall's trend pane has set one.
     chooseSpan() {
         const { fromUs } = this.session.time;
         if (!this.isChosen && !this.isOpen)

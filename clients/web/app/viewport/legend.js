@@ -66,9 +66,9 @@ function at(element, place) {
 // Legend texts by the value of the parameter `show`: functions of the quantity's name and the view's parameters that return
 // [title, suffix, note]. coverage.js has those for rarely used values.
 export const TITLES = { distance: (name, { sensor }) => [say('legend.distance', { tag: sensor ?? '–' })] };
-// Lowest value that a picture of this kind (parameter `show`) can have, as a fraction of the group's range. These kinds do not
-// depend on readings, so nothing in their pictures is uncertain. blind (smallest hot spot that a sensor would show): 5 % of the
-// range, directly at a sensor, plus a margin for rounding.
+// Lowest value that a picture can have, by kind of picture (parameter `show`), as a fraction of the group's range. Pictures of
+// these kinds do not depend on readings, so nothing in them is uncertain. blind (smallest hot spot that a sensor would show): 5
+// % of the range, directly at a sensor, plus a margin for rounding.
 const LEAST = { distance: 0, uncertainty: 0, blind: 0.05005 };
 const LIMIT_PLACES = { LL: -2, L: -1, H: 1, HH: 2 };
 

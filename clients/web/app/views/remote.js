@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Controls a control room's wall from a desk: sends the current view to a pane of the wall, holds the pane on a view, and
-// points at a position in the plant.
+// Controls a control room's video wall from a user's desk: sends the current view to a pane (an area) of the wall, makes the
+// pane keep a view until further notice, and points at a position in the plant.
 import { quantityText, zoneClock } from '../../core/format.js';
 import { ask } from '../../core/history.js';
 import { textOf, viewOf } from '../../core/named_views.js';
@@ -41,7 +41,7 @@ export class Remote {
         this.learn();
     }
 
-    // Loads the list of walls; a reload of the plant may have changed it.
+    // Loads the list of video walls; a reload of the plant may have changed it.
     async learn() {
         const { walls } = await ask('api/v1/walls', {}, this.session.token).then((answer) => answer.json(), () => ({ walls: [] }));
         this.panes = walls.flatMap(({ id: wall, displays }) => displays.flatMap(({ panes }, index) =>

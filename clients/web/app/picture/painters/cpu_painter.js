@@ -6,7 +6,7 @@ import { Layers, Raster } from '../../../core/warp_raster.js';
 export class CpuPainter {
     constructor(canvas) {
         this.canvas = canvas;
-        // an opaque canvas, because browsers without a GPU need not draw what such a canvas covers
+        // an opaque canvas: a browser without a GPU, which draws slowly, then need not draw what lies below it
         this.context = canvas.getContext('2d', { alpha: false });
         this.scratch = make('canvas');
         this.copy = this.scratch.getContext('2d', { willReadFrequently: true });
@@ -19,7 +19,8 @@ export class CpuPainter {
         this.image = new ImageData(new Uint8ClampedArray(this.raster.pixels.buffer), width, height);
     }
 
-    // Sets the size of a hidden canvas, through which pixels are read and mixed, and returns its 2D context.
+    // Sets the size of the hidden canvas and returns its 2D context. load() reads a picture's pixels through that canvas;
+    // paint() draws the warped pixels on it before it combines them with the picture below.
     copyOf(width, height) {
         if (this.scratch.width !== width || this.scratch.height !== height)
             Object.assign(this.scratch, { width, height });
