@@ -228,8 +228,8 @@ static bool levels_good(struct format_check *c)
             return wrong(c, "level %u adds %u vertices, but only %u vertices belong to this level", i, l->added_count,
                          l->vertex_count - coarser);
         if (!isfinite(l->error_m) || l->error_m < error_m || (i == 0 && l->error_m != 0))
-            return wrong(c, "level %u: the error is %g m, expected at least that of the finer level, %g m", i, (double)l->error_m,
-                         (double)error_m);
+            return wrong(c, "level of detail %u is damaged: its deviation from the model is %g m, expected %s%g m", i, (double)l->error_m,
+                         i ? "at least " : "", (double)error_m);
         for (uint32_t p = 0; p < l->primitive_count; p++)
             if (!primitive_good(c, next + p, l->vertex_count))
                 return false;

@@ -170,9 +170,9 @@ char *helper_run(const struct helper_params *params)
         why = mem_printf("%s cannot be run: %s%s%s", name, strerror(error), error == ENOENT ? ": install the package " : "",
                          error == ENOENT ? name : "");
     else if (helper.told)
-        why = mem_printf("%s was ended before it finished", name);
+        why = mem_printf("%s was stopped before it finished: the import was cancelled, or the daemon is stopping", name);
     else if (helper.timed_out)
-        why = mem_printf("%s was ended after %d s (%s)", name, params->timeout_s, params->timeout_option);
+        why = mem_printf("%s was stopped: it ran longer than %d s (%s)", name, params->timeout_s, params->timeout_option);
     else if (params->remark && WIFEXITED(status) && WEXITSTATUS(status) == HELPER_PARTLY)
         *params->remark = last_line(&helper.written);
     else if (WIFSIGNALED(status) && params->memory_bytes > 0)

@@ -31,7 +31,7 @@ struct helper_params {
 };
 
 /* Runs the program. Returns NULL on success; otherwise one line (mem_free): the program's last line on stderr, or the reason
-   why it was ended. */
+   why the program was stopped. */
 char *helper_run(const struct helper_params *params);
 
 struct quotas;

@@ -270,7 +270,8 @@ static bool follows(struct film_check *check, const json_t *statement)
         return FAIL("the frame shows live readings, but all frames of a clip must show recorded readings");
     for (size_t i = 0; i < sizeof(same) / sizeof(*same) && check->first; i++)
         if (!json_equal(json_object_get(statement, same[i]), json_object_get(check->first, same[i])))
-            return FAIL("'%s' in the frame's signed statement differs from '%s' of the first frame", same[i], same[i]);
+            return FAIL("the frame's signed field '%s' differs from that of the first frame: the frames are not of one clip",
+                        same[i]);
     if (!takes_view(check, statement))
         return false;
     int64_t step_us = at_us - check->at_us, pts_step = pts - check->pts;

@@ -219,7 +219,7 @@ static bool judge(const struct child *child, const struct child_params *params, 
     if (child->interrupted)
         snprintf(why, CHILD_WHY_BYTES, "interrupted");
     else if (child->timed_out)
-        snprintf(why, CHILD_WHY_BYTES, "%s was ended after %d s (%s)", name, params->timeout_s, params->timeout_option);
+        snprintf(why, CHILD_WHY_BYTES, "%s was stopped: it ran longer than %d s (%s)", name, params->timeout_s, params->timeout_option);
     else if (ran_out(child, params, usage))
         snprintf(why, CHILD_WHY_BYTES, "%s needs more than %zu MB of memory%s%s%s", name, params->memory_bytes >> 20,
                  params->memory_option ? " (" : "", params->memory_option ? params->memory_option : "", params->memory_option ? ")" : "");

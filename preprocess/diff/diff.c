@@ -170,7 +170,8 @@ static void compare_sensor(struct diff *diff, struct asset_pair *pair, const str
     double place_m[2][3], surface_m[2][3];
     if (tag->column >= shape->sensor_count || isnan(shape->places_m[tag->column][0])) {
         const char *why = tag->column < shape->sensor_count ? shape->whys[tag->column] : NULL;
-        orphan(diff, tag->name, tag->asset, mem_strdup(why ? why : "the prepared file of the asset does not contain this sensor"));
+        orphan(diff, tag->name, tag->asset,
+               mem_strdup(why ? why : "the prepared file of the asset does not contain this sensor: run plantcast-prep again"));
         return;
     }
     struct diff_sensor found = { .tag = tag->name, .asset = tag->asset, .limit_m = pair->limit_m, .tolerance_m = pair->tolerance_m };

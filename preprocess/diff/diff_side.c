@@ -213,7 +213,7 @@ static bool shape_of_folder(struct diff_side *side, const struct diff_side_asset
     *shape = (struct diff_side_shape){ 0 };
     if (folder_open(&shape->file, side->path, asset->key, file_why) != 1) {
         char *path = folder_asset_path(side->path, asset->key);
-        wrong(why, "prepared file %.250s: %s", path, file_why);
+        wrong(why, "prepared file %.250s: %s; run plantcast-prep again", path, file_why);
         mem_free(path);
         return false;
     }

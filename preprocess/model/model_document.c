@@ -169,15 +169,16 @@ static void take_left_out(struct document_work *work)
     for (size_t i = 0; i < json_array_size(required); i++) {
         const char *name = json_string_value(json_array_get(required, i));
         if (name && model_rules_look(name))
-            d->looks[d->look_count++] = mem_printf("the file requires the glTF extension %.100s%s", name,
-                                                   strcmp(name, specular) == 0 ? ": diffuse colours are kept, specular colours are ignored"
-                                                                               : ", which Plantcast ignores, because it affects only the "
-                                                                                 "look of the model");
+            d->looks[d->look_count++] =
+                mem_printf("Plantcast does not support the glTF extension %.100s, which the file requires: %s", name,
+                           strcmp(name, specular) == 0 ? "diffuse colours are kept, specular colours are ignored"
+                                                       : "the model is shown without it, because it affects only the look");
     }
     for (size_t i = 0; i < json_array_size(used); i++) {
         const char *name = json_string_value(json_array_get(used, i));
         if (name && !model_rules_known(name) && !model_rules_look(name))
-            d->looks[d->look_count++] = mem_printf("the file uses the glTF extension %.100s, which Plantcast does not support", name);
+            d->looks[d->look_count++] =
+                mem_printf("the file uses the glTF extension %.100s, which Plantcast does not support and ignores", name);
     }
 }
 

@@ -54,8 +54,8 @@ bool distances_print(const struct prepare *prepare, const char *folder, int asse
     }
     if (folder_open(&file, folder, asset->key, why) != 1) {
         char *path = folder_asset_path(folder, asset->key);
-        diag_error(diag, prepare->plant->files.path, asset->plant->line, 0, "asset %s: the prepared file %s: %s", asset->plant->id, path,
-                   why);
+        diag_error(diag, prepare->plant->files.path, asset->plant->line, 0,
+                   "asset %s: the prepared file %s: %s; run plantcast-prep again", asset->plant->id, path, why);
         mem_free(path);
         return false;
     }

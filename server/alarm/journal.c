@@ -90,7 +90,7 @@ static void try_to_write(struct journal *journal, bool now)
             log_err(journal->log, "alarms: the alarm journal cannot be written (%s); new alarm events are kept in memory",
                     strerror(-error));
     } else if (journal->failing) {
-        log_info(journal->log, "alarms: the alarm journal can be written again");
+        log_info(journal->log, "alarms: writing the alarm journal works again; the alarm events kept in memory are recorded");
         journal->retry_after_ns = 0;
     }
     journal->failing = error != 0;

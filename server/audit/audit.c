@@ -146,7 +146,7 @@ static void say_written(struct audit *audit, const char *why)
         log_event(audit->params.log, LOG_ERROR, EVENT_AUDIT_UNWRITABLE,
                   "audit: %s cannot be written (%s); entries are kept in memory and logged here", audit->path, why);
     else if (!why && audit->failing)
-        log_event(audit->params.log, LOG_WARN, EVENT_AUDIT_WRITTEN, "audit: %s can be written again", audit->path);
+        log_event(audit->params.log, LOG_WARN, EVENT_AUDIT_WRITTEN, "audit: writing to %s works again", audit->path);
     audit->failing = why != NULL;
     counter_set(audit->good, !audit->failing);
 }

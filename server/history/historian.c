@@ -505,7 +505,8 @@ static void try_to_write(struct historian *historian, int64_t mono_ns, int64_t u
             log_event(historian->log, LOG_ERROR, EVENT_HISTORY_UNWRITABLE,
                       "history: cannot be written (%s); new samples are kept in memory", strerror(-error));
     } else if (historian->failing) {
-        log_event(historian->log, LOG_INFO, EVENT_HISTORY_WRITTEN, "history: can be written again");
+        log_event(historian->log, LOG_INFO, EVENT_HISTORY_WRITTEN,
+                  "history: writing to disk works again; the samples kept in memory are recorded");
         historian->retry_after_ns = 0;
     }
     historian->failing = error != 0;

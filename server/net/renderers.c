@@ -679,13 +679,13 @@ static const char *on_message(struct server_context *server, struct renderer_pee
     json_t *message = json_loadb(renderer->in.at, renderer->in.length, JSON_REJECT_DUPLICATES, NULL);
     const char *type = json_string_value(json_object_get(message, "type")), *why = NULL;
     if (!type)
-        why = "the peer's message is not JSON; do both nodes run the same version?";
+        why = "the renderer or standby sent a message that is not JSON; do both nodes run the same version?";
     else if (!strcmp(type, "renderer") && renderer->state == RENDERER_NEW)
         introduce(server, renderer, message);
     else if (!strcmp(type, "promise") && is_witness(renderer) && server->params.keeper)
         on_promise(server, renderer, (uint64_t)json_integer_value(json_object_get(message, "number")));
     else if (renderer->state != RENDERER_TAKEN)
-        why = "the peer's first message is not an introduction (type renderer)";
+        why = "the first message of the renderer or standby is not an introduction (type renderer)";
     else if (server->life.hands_over)
         /* Ignores the forwarded action, because this core is handing over the lead. When the connection ends, the renderer
            tells the user that the connection was lost. */
@@ -695,7 +695,7 @@ static const char *on_message(struct server_context *server, struct renderer_pee
     else if (!strcmp(type, "pairing") && server->logins.tokens)
         pairings_ask_for(server->params.plant.pairings, message, clock_mono_ns());
     json_decref(message);
-    return json_array_size(renderer->answers) > MAX_ANSWERS ? "the peer does not read answers" : why;
+    return json_array_size(renderer->answers) > MAX_ANSWERS ? "the renderer or standby does not read this core's answers" : why;
 }
 
 /* Handles bytes received from a renderer or standby. Returns -1 if the connection must end. */
@@ -703,7 +703,7 @@ static int on_receive(struct server_context *server, struct renderer_peer *rende
 {
     const char *why = NULL;
     if (renderer->in.length + count_bytes > MAX_MESSAGE_BYTES)
-        why = "the peer's message is larger than 256 kB";
+        why = "the renderer or standby sent a message of more than 256 kB; do both nodes run the same version?";
     else
         text_add_bytes(&renderer->in, bytes, count_bytes);
     if (!why && lws_remaining_packet_payload(renderer->wsi) == 0 && lws_is_final_fragment(renderer->wsi)) {

@@ -47,7 +47,7 @@ struct asset *asset_open(struct log *log, const char *path)
     struct asset *asset = mem_new(sizeof(*asset));
     *asset = (struct asset){ .path = mem_strdup(path), .map = map, .bytes = bytes, .refs = 1 };
     if (!asset_view_init(&asset->view, map, bytes, why)) {
-        log_err(log, "asset file %s: %s", path, why);
+        log_err(log, "asset file %s: %s; prepare the plant again", path, why);
         asset_unref(&asset);
         return NULL;
     }
@@ -72,7 +72,7 @@ bool asset_open_influence(struct log *log, struct asset *asset)
     bool good = cache_file_open(&asset->influence_file, path, INFLUENCE_MAGIC, header->key, why) &&
                 influence_view_init(&asset->influence, asset->influence_file.bytes, asset->influence_file.count, header->vertex_count, why);
     if (!good) {
-        log_err(log, "influence file %s: %s", path, why);
+        log_err(log, "influence file %s: %s; prepare the plant again", path, why);
         asset->influence = (struct influence_view){ 0 };
         cache_file_close(&asset->influence_file);
     }

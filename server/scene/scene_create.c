@@ -88,15 +88,16 @@ static bool influence_fits(struct log *log, const struct plant *plant, const str
         /* without sensors, plantcast-prep writes no influence file, so no heat distances are required */
         bool heat = placed > 0 && group->heat && !has_entry(log, asset, g, INFLUENCE_HEAT, placed);
         if (heat || (placed > 0 && group->directed && !has_entry(log, asset, g, INFLUENCE_TRANSPORT, placed))) {
-            log_err(log, "asset %s: no usable prepared file with %s for group %s", asset->plant->id, heat ? "heat distances" : "directions",
-                    group->id);
+            log_err(log, "asset %s: the prepared %s for group %s are missing, damaged or outdated; prepare the plant again",
+                    asset->plant->id, heat ? "heat distances" : "directions", group->id);
             return false;
         }
         for (int i = INTERPOLATION_HARMONIC; placed > 0 && i < INTERPOLATIONS; i++) {
             if (!plant_prepares(group, (enum interpolation)i))
                 continue;
             if (!asset_open_influence(log, asset->file)) {
-                log_err(log, "asset %s: no usable prepared file with the influence of the sensors", asset->plant->id);
+                log_err(log, "asset %s: the prepared influence file is missing, damaged or outdated; prepare the plant again",
+                        asset->plant->id);
                 return false;
             }
             const struct influence_entry *entry = influence_find(&asset->file->influence, (uint32_t)g, (uint32_t)i);
@@ -107,7 +108,7 @@ static bool influence_fits(struct log *log, const struct plant *plant, const str
                 continue;
             log_err(log,
                     "asset %s: the influence of the sensors in group %s was prepared with another tag list, `disc_m`, `gp`, or "
-                    "metal wall (`thickness_m`, `conductivity`, `heat_transfer`)",
+                    "metal wall (`thickness_m`, `conductivity`, `heat_transfer`); prepare the plant again",
                     asset->plant->id, group->id);
             return false;
         }
@@ -209,7 +210,7 @@ static bool create_asset(struct log *log, struct scene *scene, int index)
     struct scene_asset *asset = &scene->assets[index];
     struct plant_sensor *sensors = NULL;
     if (!asset->file) {
-        log_err(log, "asset %s: no usable prepared file", asset->plant->id);
+        log_err(log, "asset %s: the prepared file is missing, damaged or outdated; prepare the plant again", asset->plant->id);
         return false;
     }
     size_t count = plant_sensors(scene->plant, index, &sensors);
@@ -285,7 +286,7 @@ static bool find_file(struct file_uses *uses, const struct manifest *manifest, u
     asset->plant = &scene->plant->assets[index];
     const struct manifest_entry *entry = manifest_find(manifest, asset->plant->id);
     if (!entry) {
-        log_err(log, "asset %s is not in %s", asset->plant->id, manifest->path);
+        log_err(log, "asset %s is not in %s; prepare the plant again", asset->plant->id, manifest->path);
         return false;
     }
     if (entry->missing)

@@ -120,7 +120,7 @@ exec '${bin}/real-prep' "$@"
 
 test('a plantcast-prep that the daemon started is ended at its limits of time and memory', { skip }, () => inFolder(async (folder) => {
     for (const [limit, hold, line] of [
-        ['prepare-seconds=1', 'exec sleep 1000', /plantcast-prep was ended after 1 s \(--limit prepare-seconds\)/],
+        ['prepare-seconds=1', 'exec sleep 1000', /plantcast-prep was stopped: it ran longer than 1 s \(--limit prepare-seconds\)/],
         ['prepare-megabytes=64', 'exec /usr/bin/python3 -c "print(len(bytes(1 << 28)))" 2>/dev/null', /plantcast-prep ended with status 1/],
         ['prepare-megabytes=64', 'echo out of memory >&2; kill -ABRT $$',
             /plantcast-prep crashed \(Aborted\); its memory limit is 64 MB \(--limit prepare-megabytes\)/]]) {
@@ -149,7 +149,8 @@ test('a model reader that the daemon started is ended at --limit import-seconds'
         writeFileSync(join(exports, 'model.obj'), 'hang\n');
         plant.bin = programs(folder, ESCAPE, 'plantcastd', 'plantcast-prep', 'plantcast-match');
         await plant.startDaemon('--import=now', '--limit', 'import-seconds=1');
-        await plant.daemon.line(/the OBJ reader was ended after 1 s \(limit set by --timeout, or by plantcastd --limit import-seconds\)/);
+        await plant.daemon.line(new RegExp('the OBJ reader was stopped: it ran longer than 1 s \\(limit set by --timeout, or by ' +
+            'plantcastd --limit import-seconds\\)'));
     } finally {
         await plant.destroy();
     }
@@ -261,7 +262,7 @@ const MODELS = {
 
 const SLOW = ['nodes.gltf', 'list.stp', 'string.stp', 'cycle.ifc']; // files that are tried only in a long run
 const readsIfc = existsSync(join(BIN, 'plantcast-import-ifc/ifc.mjs'));
-const kindOf = (status, line) => (status === 0 ? 'read' : /needs more|was ended|crashed/.exec(line)?.[0] ?? 'refused');
+const kindOf = (status, line) => (status === 0 ? 'read' : /needs more|was stopped|crashed/.exec(line)?.[0] ?? 'refused');
 
 test('a model whose reader crashes, hangs or exceeds memory gets one error line, and the other models are imported',
     { skip }, () => inFolder((folder) => {
@@ -289,7 +290,7 @@ test('a model whose reader crashes, hangs or exceeds memory gets one error line,
         rmSync(model);
     }
     console.log(`# of ${Object.keys(MODELS).length} models: ${JSON.stringify(table)}`);
-    for (const kind of ['refused', 'needs more', 'crashed', ...readsIfc ? ['was ended'] : []])
+    for (const kind of ['refused', 'needs more', 'crashed', ...readsIfc ? ['was stopped'] : []])
         assert.ok(table[kind] > 0, `no model of the kind ${kind}: ${JSON.stringify(table)}`);
 }));
 

@@ -64,7 +64,7 @@ test('plantcast-prep converts a model again only when its input, its command or 
 test('a failed conversion prints one line and leaves the old model unchanged', { skip }, () => withPlant(({ folder, write, prep }) => {
     for (const [command, why, more] of [['echo first >&2; echo no licence >&2; exit 3', /could not be created: no licence/],
         ['kill -SEGV $$', /the command crashed \(SIGSEGV\)/],
-        ['sleep 1000', /the command was ended after 1 s \(timeout_s\)/, ', timeout_s: 1'],
+        ['sleep 1000', /the command was stopped: it ran longer than 1 s \(timeout_s\)/, ', timeout_s: 1'],
         ['true', /its output \(\$2\): No such file/], ['echo x >"$2"', /its output \(\$2\): is not a glTF/],
         ["python3 -c 'import socket; socket.socket()'", /Operation not permitted/],
         ['echo x >"${1%/*}/other"', /cannot create .*other: Permission denied/],

@@ -139,7 +139,8 @@ test('glTF: percent signs and accents in file names are decoded; unknown require
         materials: [{ name: 'paint', pbrMetallicRoughness: { baseColorTexture: { index: 0 } } }] }));
     const { status, stdout, stderr } = plantcast('import', join(folder, 'look.gltf'), '-o', join(folder, 'plant'));
     assert.equal(status, 0, stderr);
-    assert.match(stdout, /left out: the file requires the glTF extension KHR_texture_basisu, which Plantcast ignores, because it affects /);
+    assert.match(stdout, new RegExp('left out: Plantcast does not support the glTF extension KHR_texture_basisu, which the file ' +
+        'requires: the model is shown without it, because it affects only the look'));
     assert.match(stdout, /left out: material 0 'paint': the base colour texture: the texture's image is missing: 'none\.png'/);
     const ran = (program, ...args) => spawnSync(join(BIN, program), [...args, join(folder, 'plant/plant.yaml')], { encoding: 'utf8' });
     assert.match(ran('plantcastd', '--check').stdout,
@@ -149,7 +150,7 @@ test('glTF: percent signs and accents in file names are decoded; unknown require
     for (let run = 0; run < 2; run++) {
         assert.equal(ran('plantcast-prep').status, 0);
         const checked = ran('plantcastd', '--check').stdout;
-        assert.match(checked, /plant\.yaml:\d+: warning: model .*look\.glb: left out: .* requires the glTF extension KHR_texture_basisu/);
+        assert.match(checked, /plant\.yaml:\d+: warning: model .*look\.glb: left out: .* the glTF extension KHR_texture_basisu, which/);
         assert.match(checked, /warning: model .*look\.glb: left out: material 0 'paint': the base colour texture/);
     }
     writeFileSync(join(folder, 'r.gltf'), gltf('a.bin', { extensionsRequired: ['CESIUM_RTC'] }));
@@ -247,7 +248,7 @@ test('glTF: nodes without triangles, and nodes in no scene, are reported', { ski
         nodes: [...['T-1', 'L-2', 'P-3', 'E-4'].map((name, i) => ({ name, mesh: i })), { name: 'S-5', mesh: 0 }] }));
     assert.deepEqual(lost, [{ id: '#3', name: 'E-4', class: 'node', guid: '', why: 'the node\'s mesh has no triangles' }]);
     assert.match(out, /not shown: 2 nodes that consist only of lines or points: L-2, P-3\n/);
-    assert.deepEqual(left_out, ['the file uses the glTF extension ACME_bent, which Plantcast does not support',
+    assert.deepEqual(left_out, ['the file uses the glTF extension ACME_bent, which Plantcast does not support and ignores',
         "not in the file's default scene: 1 node with a mesh, node 4 'S-5'"]);
 }));
 
@@ -260,8 +261,8 @@ test('glTF: the diffuse colour of old materials, unusual image types and unknown
         images: ['image/jpg', 'application/octet-stream', ''].map((type) => ({ uri: `data:${type};base64,${png}` })),
         textures: [{ source: 0 }, { source: 1 }, { source: 2 }], materials: [0, 1, 2].map((index) =>
             old({ diffuseFactor: [1, 0, 0, 1], diffuseTexture: { index } })) }));
-    assert.deepEqual(left_out, ['the file requires the glTF extension KHR_materials_pbrSpecularGlossiness: diffuse colours are kept, ' +
-        'specular colours are ignored']);
+    assert.deepEqual(left_out, ['Plantcast does not support the glTF extension KHR_materials_pbrSpecularGlossiness, which the file ' +
+        'requires: diffuse colours are kept, specular colours are ignored']);
     const json = Buffer.from(JSON.stringify({ ...JSON.parse(gltf()), buffers: [{ byteLength: 42 }] }).padEnd(2000));
     const [first, bin, other] = [['JSON', json], ['BIN', triangle], ['ACME', Buffer.alloc(8)]];
     for (const [name, ...chunks] of [['after.glb', first, bin, other], ['between.glb', first, other, bin]])

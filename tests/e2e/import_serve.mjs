@@ -298,7 +298,7 @@ test('an import that fails or is cancelled after placing its models restores the
             rmSync(wait);
             await served.post('/cancel');
             const { failed } = await served.idle(), after = files();
-            assert.match(failed, /^plantcast-prep was ended before it finished$/);
+            assert.match(failed, /^plantcast-prep was stopped before it finished: the import was cancelled, or the daemon is stopping$/);
             for (const name of ['plant.yaml', 'plant.glb', 'tags.csv'])
                 assert.equal(after[name], before[name], name);
             if (saves)

@@ -179,7 +179,7 @@ test('on a full disk each action is answered "not kept" with the reason; once th
         Number(/^plantcast_history_free_bytes (\d+)$/m.exec(await (await ask('/metrics')).text())[1]) - bavail * bsize) < 1 << 18);
     free();
     await until('that the journal is written again',
-        () => /the alarm journal can be written again(?![^]*the alarm journal cannot be written)/.test(plant.daemon.said));
+        () => /writing the alarm journal works again(?![^]*the alarm journal cannot be written)/.test(plant.daemon.said));
     await killed();
     const { state } = await until('the alarm', () => alarm());
     assert.notEqual(state, 'unacknowledged', 'a change that could not be kept is kept once there is space');

@@ -298,7 +298,7 @@ TEST(wrong_primitives_and_levels_are_refused)
             "level 1: starts at primitive 0 and has 1 primitives, expected a start at primitive 1 of 2");
     REFUSED(ASSET_LEVELS, struct asset_level, [1].primitive_count = UINT32_MAX, "level 1: starts at primitive");
     REFUSED(ASSET_LEVELS, struct asset_level, [1].error_m = -1,
-            "level 1: the error is -1 m, expected at least that of the finer level, 0 m");
+            "level of detail 1 is damaged: its deviation from the model is -1 m, expected at least 0 m");
     REFUSED(ASSET_LEVELS, struct asset_level, [0].added_count = 2, "level 0 adds 2 vertices, but only 1 vertices belong to this level");
     struct asset_bytes f = build(&good);
     f.header->level_count = 1;

@@ -77,7 +77,7 @@ TEST(test_a_crash_is_told)
 TEST(test_a_hang_ends)
 {
     assert_false(run("sleep 1000 & sleep 1000", 1, room));
-    assert_string_equal(why, "the script was ended after 1 s (--timeout)");
+    assert_string_equal(why, "the script was stopped: it ran longer than 1 s (--timeout)");
     assert_true(seconds < 5);
     assert_false(run("exec >/dev/null 2>&1; sleep 1000", 1, room));
     assert_true(seconds < 5);

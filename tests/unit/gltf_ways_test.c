@@ -650,9 +650,9 @@ CASE(textures_lie_where_their_transform_puts_them)
         json_object_set_new(maker.root, "extensionsRequired", json_pack("[s]", looks[i]));
         try_model(l, &maker);
         assert_good(l);
-        snprintf(said, sizeof(said), "the file requires the glTF extension %s%s", looks[i],
-                 strstr(looks[i], "Specular") ? ": diffuse colours are kept, specular colours are ignored"
-                                              : ", which Plantcast ignores, because it affects only the look of the model");
+        snprintf(said, sizeof(said), "Plantcast does not support the glTF extension %s, which the file requires: %s", looks[i],
+                 strstr(looks[i], "Specular") ? "diffuse colours are kept, specular colours are ignored"
+                                              : "the model is shown without it, because it affects only the look");
         assert_string_equal(l->model.left_out[0], said);
         assert_true(l->model.materials[0].base_color_texture != ASSET_NO_TEXTURE);
     }

@@ -231,7 +231,7 @@ CASE(broken_files_are_refused)
     temp_write_text(f->prepared, "1.asset", "glTF and so on");
     assert_refused(f, "1.asset: not an asset file");
     unlink(path);
-    assert_refused(f, "asset C: no usable prepared file");
+    assert_refused(f, "asset C: the prepared file is missing, damaged or outdated");
 }
 
 CASE(broken_manifests_are_refused)

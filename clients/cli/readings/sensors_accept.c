@@ -92,13 +92,13 @@ static char *wrong_version(const struct plant *plant, const char *before, const 
     char *now = without_places(plant, before), *then = without_places(plant, after), *why = NULL;
     struct tag_lines lines = { 0 };
     if (!strcmp(before, after)) {
-        why = mem_strdup("this version equals the present tag list");
+        why = mem_strdup("this earlier version equals the present tag list");
     } else if (!now || !then) {
-        why = mem_strdup("this version does not list the same tags as the present tag list");
+        why = mem_strdup("this earlier version does not list the same tags as the present tag list: restore it on the web page");
     } else if (strcmp(now, then) != 0) {
         tag_lines(now, then, &lines);
         why = mem_printf(
-            "this version differs from the present tag list in more than `Place` (line %d): restore this version on the web page",
+            "this earlier version differs from the present tag list in more than `Place` (line %d): restore it on the web page",
             lines.count ? lines.at[0].line : 1);
         tag_lines_finish(&lines);
     }

@@ -66,7 +66,7 @@ bool add_face(const flat_face &from, TopoDS_Compound *to)
         return true;
     }
     if (!from.holes.empty())
-        throw unsupported("unsupported: a face with holes that is not flat");
+        throw unsupported("Plantcast does not support faces that have holes and are not flat");
     for (size_t i = 1; i + 1 < from.outer.size(); i++) {
         TopoDS_Wire corner = wire_through({ from.outer[0], from.outer[i], from.outer[i + 1] });
         if (!corner.IsNull() && BRepBuilderAPI_MakeFace(corner, Standard_True).IsDone())
@@ -102,7 +102,7 @@ polygon loop_of(const ifc_model &in, const entity &bound)
     entity loop = in.statements.get(bound[0]);
     polygon out;
     if (!loop.is("IFCPOLYLOOP"))
-        throw unsupported(loop.type);
+        throw unsupported("Plantcast does not support " + loop.type);
     for (const value &point : loop[0].list)
         out.push_back(point_of(in, point));
     if (bound[1].is(".F."))

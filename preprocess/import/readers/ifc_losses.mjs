@@ -96,14 +96,16 @@ export function findLosses(model, product, isShown, failed) {
             continue;
         }
         const reason = [id, ...items].map((item) => failed.get(item)).find(Boolean);
-        const why = items.length === 0 ? 'its representation is empty' : kinds.join(', ') + (reason ? `: ${reason}` : '');
+        const why = items.length === 0 ? 'its representation is empty'
+            : kinds.join(', ') + (reason ? `: ${reason}; the element is left out` : '');
         ids.push(id);
         items.forEach((item) => named.add(item));
         lost.push(fields('lost', `#${id}`, model.nameOf(id) ?? '', model.classOf(id), line.GlobalId?.value ?? 'no GUID', why));
     }
     const isItem = (id) => !named.has(id) && !model.line(id)?.GlobalId && model.classOf(id) !== GRID;
     const drawn = [...failed].filter(([id]) => isItem(id)).map(([id, reason]) =>
-        fields('error', 1, `Open CASCADE cannot build #${id} ${model.classOf(id)} (${reason}): it is shown as web-ifc draws it`));
+        fields('error', 1, `#${id} ${model.classOf(id)} is built by web-ifc, with coarse circles, because Open CASCADE cannot build it: ${
+            reason}`));
     return { lost, lines, ids, drawn };
 }
 

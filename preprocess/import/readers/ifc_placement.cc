@@ -43,7 +43,7 @@ std::vector<curve_piece> axis_of(const ifc_model &in, const entity &axis, double
         else if (piece.curve->IsKind(STANDARD_TYPE(Geom_Line)))
             piece.curve->Translate(left);
         else
-            throw unsupported("unsupported: an offset from a grid axis that is neither a line nor an arc");
+            throw unsupported("Plantcast does not support an offset from a grid axis that is neither a line nor an arc");
     }
     return out;
 }
@@ -79,7 +79,7 @@ crossing crossing_of(const ifc_model &in, const value &reference)
 {
     entity from = in.statements.get(reference);
     if (!from.is("IFCVIRTUALGRIDINTERSECTION") || from[0].list.size() != 2)
-        throw unsupported(from.type);
+        throw unsupported("Plantcast does not support " + from.type);
     auto offset = [&](size_t i) { return i < from[1].list.size() ? in.length * file::number(from[1].list[i]) : 0; };
     std::vector<curve_piece> axes[2];
     for (size_t i = 0; i < 2; i++)
@@ -146,7 +146,7 @@ gp_Trsf placement_within(const ifc_model &in, const value &reference, int depth)
     }
     bool linear = from.is("IFCLINEARPLACEMENT") && !from[2].absent();
     if (!from.is("IFCLOCALPLACEMENT") && !linear)
-        throw unsupported(from.type);
+        throw unsupported("Plantcast does not support " + from.type);
     return placement_within(in, from[0], depth + 1) * placement_of(in, from[linear ? 2 : 1]);
 }
 

@@ -102,7 +102,7 @@ trihedron on_surface(const ifc_model &in, const entity &surface, const curve_pie
         return { gp_Dir(out - gp_Vec(z) * out.Dot(gp_Vec(z))), z };
     }
     if (!surface.is("IFCSURFACEOFLINEAREXTRUSION"))
-        throw unsupported("unsupported: a profile that follows " + surface.type);
+        throw unsupported("Plantcast does not support a profile that is swept along " + surface.type);
     gp_Dir along = direction_of(in, surface[2], gp::DZ()).Transformed(place);
     return { gp_Dir(first.tangent(false).Crossed(gp_Vec(along))), along };
 }
@@ -163,7 +163,7 @@ TopoDS_Shape half_space(const ifc_model &in, const entity &item)
 {
     entity surface = in.statements.get(item[0]);
     if (!surface.is("IFCPLANE"))
-        throw unsupported("unsupported: a half space bounded by " + surface.type);
+        throw unsupported("Plantcast does not support a half space that is bounded by " + surface.type);
     gp_Trsf place = placement_of(in, surface[0]);
     gp_Dir away = gp::DZ().Transformed(place);
     gp_Pnt at = gp::Origin().Transformed(place), inside = at.Translated(gp_Vec(away) * (item[1].is_true() ? -1 : 1));
@@ -189,7 +189,7 @@ TopoDS_Shape boolean(const ifc_model &in, const entity &item, int depth)
     else
         out = BRepAlgoAPI_Common(first, second).Shape();
     if (out.IsNull())
-        throw unsupported("Open CASCADE fails to carry out the IFC boolean operation");
+        throw unsupported("Open CASCADE cannot carry out the IFC boolean operation");
     return out;
 }
 
@@ -247,7 +247,7 @@ TopoDS_Shape solid_of(const ifc_model &in, const entity &item, int depth)
         return brep_of(in, item);
     TopoDS_Shape out = primitive(in, item);
     if (out.IsNull())
-        throw unsupported(item.type);
+        throw unsupported("Plantcast does not support " + item.type);
     return out;
 }
 

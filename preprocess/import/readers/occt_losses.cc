@@ -194,8 +194,9 @@ void say_lost(const file_losses &of, const lost_faces &lost)
         ids += " " + id_of(of, lost.faces[i]);
     const std::string more = lost.faces.size() > MOST_IDS ? " ..." : "";
     const std::string reason = lost.owner.body == lost.faces[0]
-                                   ? "Open CASCADE could not read the body"
-                                   : std::to_string(lost.faces.size()) + " faces of the body could not be read:" + ids + more;
+                                   ? "Open CASCADE could not read this shape, which is left out"
+                                   : std::to_string(lost.faces.size()) + " faces of this shape could not be read, and are left out:" +
+                                         ids + more;
     printf("lost\t%s\t%s%s\t%s\t\t%s\n", id_of(of, lost.owner.body).c_str(), of.file.c_str(), lost.owner.name.c_str(),
            type_of(lost.owner.body).c_str(), reason.c_str());
 }
@@ -225,7 +226,7 @@ void say_lost_places(const file_losses &of)
         if (product.IsNull() || has_shape(of, place) || !has_shape(of, product))
             continue;
         Handle(TCollection_HAsciiString) name = place->Name().IsNull() || place->Name()->IsEmpty() ? place->Id() : place->Name();
-        printf("lost\t%s\t%s%s\tplace\t\tthe file gives no placement for the part, or an unsupported kind of placement\n",
+        printf("lost\t%s\t%s%s\tplace\t\tthe part is left out here: the file gives no placement, or an unsupported kind of one\n",
                id_of(of, place).c_str(), of.file.c_str(), name.IsNull() ? "" : one_line(name->ToCString()).c_str());
     }
 }
