@@ -54,9 +54,9 @@ function boundsOf(members) {
 
 // Returns the position by which each ring is grouped: its own, or in a flood of alarms the centre of its equipment's rings, so
 // that these share a call-out.
-function anchorsOf(items) {
+function anchorsOf(items, most) {
     const all = new Map();
-    for (const item of items.length > MOST_GROUPS ? items : [])
+    for (const item of items.length > most ? items : [])
         all.set(item.tag?.asset, [...(all.get(item.tag?.asset) ?? []), item]);
     const centres = new Map([...all].filter(([asset]) => asset).map(([asset, members]) => {
         const [left, right, top, bottom] = boundsOf(members);
@@ -89,17 +89,17 @@ const placeable = (items, area, unit) => (hasArea(area) && unit > 0 && unit < In
     ? items.filter(({ x, y, width, height }) => [x, y, width, height].every(Number.isFinite)) : []);
 
 // Places labels. all: items with rings, the most important first; measure(members) returns { width, height } of their call-out; taken:
-// occupied space (labels.js). Returns [{ members, box, slot, leads }, ...]. Each item at a finite position is a member of one label. leads:
-// Set of those members of a call-out that have a leader line. In an area of 0x0 there are no labels.
-export function placeRings(all, { area, unit, taken, measure }) {
+// occupied space (labels.js); most: maximum number of labels. Returns [{ members, box, slot, leads }, ...]. Each item at a finite position
+// is a member of one label. leads: Set of those members of a call-out that have a leader line. In an area of 0x0 there are no labels.
+export function placeRings(all, { area, unit, taken, measure, most = MOST_GROUPS }) {
     const order = placeable(all, area, unit);
     let lists, least = unit;
-    const anchors = anchorsOf(order);
+    const anchors = anchorsOf(order, most);
     const close = (i, k) => {
         const a = anchors[i], b = anchors[k], did = order[i].callout !== undefined && order[i].callout === order[k].callout;
         return (a.x - b.x) ** 2 + (a.y - b.y) ** 2 < ((did ? STILL_CLOSE : CLOSE) * least) ** 2;
     };
-    for (let n = 0; (lists = components(order.length, close)).length > MOST_GROUPS && n < MOST_GROWTHS; n++)
+    for (let n = 0; (lists = components(order.length, close)).length > most && n < MOST_GROWTHS; n++)
         least *= FARTHER;
     let groups = lists.map((list) => group(list.map((i) => order[i]), measure)).filter(hasFiniteBox);
     for (;;) {

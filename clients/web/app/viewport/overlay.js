@@ -12,6 +12,9 @@ export const INK = '#1d252d';
 export const INK_2 = '#4d5964', ACCENT = '#2a5f8f';
 export const LABEL_HEIGHT = 20;
 const PADDING = 6, NAMES_UP_TO = 24, RING_RADIUS = 10;
+// in a picture lower than this (in CSS pixels, not on walls), alarm labels are few and short, so that the plant stays visible
+const LOW_PICTURE = 340;
+const LONG_UP_TO = 3; // maximum number of alarm labels with a value in a low picture
 
 const SHAPES = {
     good: (c, r) => c.arc(0, 0, r, 0, 2 * Math.PI),
@@ -62,6 +65,10 @@ export class Overlay {
 
     get high() {
         return this.viewport.height / this.unit;
+    }
+
+    get isLow() {
+        return this.unit === 1 && this.high < LOW_PICTURE;
     }
 
     // Computes the positions of the shown group's sensors in the picture on the screen.
@@ -202,14 +209,16 @@ export class Overlay {
         marks.sort((a, b) => a.tag.index - b.tag.index || a.half - b.half);
         const tooMany = inSight.filter(({ reading }) => reading.quality === 'bad').length > MOST_BAD;
         const named = inSight.length <= NAMES_UP_TO;
+        const short = this.isLow && marks.filter(({ alarm }) => alarm).length > LONG_UP_TO;
         return marks.map((marker) => {
             const { tag, reading } = marker, id = `${tag.index}/${marker.half}`;
             const { alarm } = marker;
             const onSelected = tag.asset === this.session.params.selected;
-            const parts = this.parts(marker, named || onSelected || marker.origin || alarm !== null);
+            const parts = short && alarm ? [[tag.name, 400, INK_2], [alarm.kind, 700, null]]
+                : this.parts(marker, named || onSelected || marker.origin || alarm !== null);
             const width = this.lineWidth(parts);
             const bad = reading.quality === 'bad', unseen = (marker.occluded || marker.distance_m === null) && !alarm;
-            const silent = unseen || this.isChosen(tag) || (bad && tooMany && !alarm) || (this.calm && !alarm && !bad);
+            const silent = unseen || this.isChosen(tag) || (bad && tooMany && !alarm) || ((this.calm || short) && !alarm && !bad);
             const rank = silent ? -1 : alarm ? RANK_RING : bad || marker.origin ? 2 : reading.quality !== 'good' || onSelected ? 1 : 0;
             const { x, y, depth, half } = marker;
             const { slot: held, callout } = this.places.get(id) ?? {}, ring = alarm !== null;
