@@ -11,6 +11,7 @@ import { askPick } from '../../core/requests.js';
 import { along, length, subtract } from '../../core/vector.js';
 import { Approach } from './approach.js';
 import { clock } from '../common/clock.js';
+import { phone } from '../common/dom.js';
 import { probeCodecs } from '../startup.js';
 import { isOnPicture } from './input.js';
 
@@ -21,6 +22,8 @@ const ANCHOR_MS = 600, ANCHOR_PX = 10;
 // smallest elevation of the camera in degrees at the end of a flight, so that the camera stays above the floor
 const LEAST_ARRIVAL_DEG = 15;
 const MOST_BACK = 30; // maximum number of flights that can be undone
+const USUAL_MARGIN = 1.08; // factor on the distance of a fit
+const STRIP_PX = 28; // height of a phone's legend, a strip across the top of the picture (common/sheet.css)
 const WRITTEN = 'input:not([type="radio"], [type="checkbox"], [type="range"]), select, textarea'; // fields that take typed text
 
 // Returns true if two cameras differ by less than 2 % of their distance to the target.
@@ -46,9 +49,10 @@ export class CameraController {
                 Object.assign(this.anchor, { point: position ?? this.anchor.point, sure: true });
         });
         window.addEventListener('blur', () => this.keys.clear());
-        new ResizeObserver(() => this.stayHome()).observe(viewport.element);
+        this.fitted = null; // the last fit to a box: { from (camera before), box, margin, to (fitted camera) }
+        new ResizeObserver(() => this.stayFitted()).observe(viewport.element);
         // splitting a view, or ending the split, changes the pictures' shape: refits a camera that shows the whole plant
-        session.on('params', () => this.stayHome());
+        session.on('params', () => this.stayFitted());
         probeCodecs(); // tests now whether the browser decodes H.264, which the pictures of a moving camera will need
         session.greeted(() => session.reprojects && modules.prepare('warp'));
     }
@@ -250,15 +254,30 @@ export class CameraController {
         return this.session.homeIn(width, this.viewport.height);
     }
 
-    // When the picture changes shape, moves the camera so that the whole plant stays in view, if the camera showed the home view before.
-    stayHome() {
-        const { session } = this;
+    // When the picture changes shape, refits the camera if it shows the home view or a fitted box, or is on its way there.
+    stayFitted() {
+        const { session, fitted } = this;
         if (!session.model)
             return;
-        const now = this.homeNow, was = this.lastHome ?? now;
+        const now = this.homeNow, was = this.lastHome ?? now, end = this.fly?.path(Infinity) ?? session.camera;
         this.lastHome = now;
-        if (session.leader === null && isNear(session.camera, was) && !same(now, was))
-            session.setCamera(now);
+        const isFitted = fitted && same(end, fitted.to), to = isFitted ? this.refit() : isNear(end, was) ? now : end;
+        if (session.leader !== null || same(to, end) || (!isFitted && same(now, was)))
+            return;
+        if (this.fly)
+            this.steer(to);
+        else
+            session.setCamera(to);
+    }
+
+    // Returns the camera of the last fit for the present shape of the picture. On a phone, the box is in the middle of the part below the
+    // legend's strip.
+    refit() {
+        const { from, box, margin } = this.fitted, { height } = this.viewport;
+        const strip = phone.matches && height > 2 * STRIP_PX ? STRIP_PX : 0;
+        const to = fit(from, box, this.aspect, strip ? (margin * height) / (height - strip) : margin);
+        this.fitted.to = strip ? pan(to, 0, strip / 2, height) : to;
+        return this.fitted.to;
     }
 
     flyHome() {
@@ -270,10 +289,11 @@ export class CameraController {
         this.approach.go(tag, asset, (camera) => this.steer(camera));
     }
 
-    flyToBox(box, margin) {
+    flyToBox(box, margin = USUAL_MARGIN) {
         const camera = this.session.camera;
         const rise = Math.max(0, LEAST_ARRIVAL_DEG - elevation(camera));
-        this.flyTo(fit(orbit(camera, 0, rise), box, this.aspect, margin));
+        this.fitted = { from: orbit(camera, 0, rise), box, margin };
+        this.flyTo(this.refit());
     }
 
     tick(now) {
