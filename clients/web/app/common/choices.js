@@ -16,7 +16,8 @@ export function fillSegments(fieldset, name, choices, onChoose) {
 export function markSegment(fieldset, value) {
     for (const input of fieldset.querySelectorAll('.row input[type="radio"]')) {
         input.checked = input.value === value;
-        if (input.checked)
+        // in a panel, rows wrap instead of scrolling, and scrolling the panel would hide its first lines
+        if (input.checked && !fieldset.closest('.panel'))
             input.parentNode.scrollIntoView({ block: 'nearest', inline: 'nearest' });
     }
 }
