@@ -407,6 +407,7 @@ mean: Mittel
 max: Max
 known: Gültig
 focus: Diese Kurve hervorheben und ihre Grenzwerte zeigen
+which: Diagramm
 chart: Diagramme. Pfeiltasten bewegen das Fadenkreuz, Plus und Minus zoomen, Bildtasten verschieben, Enter zeigt den Zeitpunkt.
 table: Werte und Statistik
 raised: {alarm}, gekommen {time}

@@ -406,6 +406,7 @@ mean: Mean
 max: Max
 known: Valid
 focus: Emphasise this curve and show its limits
+which: Chart
 chart: Charts. Arrow keys move the crosshair, plus and minus zoom, Page keys move the range, Enter shows that instant.
 table: Values and statistics
 raised: {alarm}, raised {time}

@@ -401,6 +401,7 @@ mean: 평균
 max: 최대
 known: 유효
 focus: 이 곡선을 강조하고 한계값 표시
+which: 차트
 chart: 차트. 화살표 키로 십자선 이동, 더하기와 빼기로 확대·축소, Page 키로 이동, Enter로 그 시각 표시.
 table: 값과 통계
 raised: {alarm}, {time} 발생

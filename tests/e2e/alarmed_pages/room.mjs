@@ -134,9 +134,12 @@ const panelsAmiss = (page) => page.evaluate(() => {
         const { left, top, right, bottom } = box(panel), legend = document.getElementById('legend');
         if (left < 0 || top < 0 || right > innerWidth || bottom > innerHeight)
             found.push(`${panel.id} leaves the screen: ${[left, top, right, bottom].map(Math.round)}`);
-        if (panel.localName !== 'dialog' && top < buttons.bottom && bottom > buttons.top)
+        const meets = top < buttons.bottom && bottom > buttons.top && left < buttons.right && right > buttons.left;
+        if (panel.localName !== 'dialog' && meets)
             found.push(`${panel.id} lies over the buttons`);
         const isCut = panel.scrollHeight > panel.clientHeight + 1 && getComputedStyle(panel).overflowY !== 'auto';
+        if (panel.scrollTop > 0)
+            found.push(`${panel.id} does not begin with its first line`);
         if (panel.scrollWidth > panel.clientWidth + 1 || isCut)
             found.push(`${panel.id} is cut off`);
         if (panel.matches('.panel, .display') && innerWidth >= 720 && legend.checkVisibility() && box(legend).right > left)

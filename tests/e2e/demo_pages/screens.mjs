@@ -313,8 +313,7 @@ const boxOf = (page, selector) => page.locator(selector).boundingBox();
 test('phones: panels are sheets of at most 40 % beside the picture, the legend is a strip', options, () => withPage(PHONE, async (page) => {
     for (const [width, height] of PHONES) {
         const upright = height > width, name = `${width}x${height}`;
-        await page.setViewportSize({ width, height });
-        await page.waitForFunction((wide) => Math.abs(globalThis.plantcast.viewport.width - wide) < 2, width);
+        await resize(page, { width, height });
         // waits for the legend's height, because the browser sends the click that opens or closes it some time after the tap
         const isOpen = (is) => page.waitForFunction((open) => {
             const { height: high } = document.getElementById('legend').getBoundingClientRect();
@@ -325,6 +324,8 @@ test('phones: panels are sheets of at most 40 % beside the picture, the legend i
         await isOpen(true);
         await page.locator('#legend').tap();
         await isOpen(false);
+        const { height: tall } = await boxOf(page, '#viewport');
+        assert.ok(tall >= (upright ? 0.6 : 0.8) * height, `${name}: the bars leave a picture of ${tall} px`);
         for (const [button, sheet] of Object.entries(SHEETS)) {
             await page.locator(`#${button}`).tap();
             await page.waitForFunction(([one, side, whole]) => {
@@ -450,8 +451,7 @@ test('phones: a trend\'s chart is readable, its table fits, and the picture stay
     await page.locator('#trend-tags.lacks .known').first().waitFor();
     for (const [width, height] of PHONES) {
         const name = `${width}x${height}`, isLying = width > height;
-        await page.setViewportSize({ width, height });
-        await page.waitForFunction((wide) => Math.abs(globalThis.plantcast.viewport.width - wide) < 2, width);
+        await resize(page, { width, height });
         await until(`${name}: a chart and a picture`, async () => {
             const [chart, picture] = await Promise.all(['#trend-chart', '#viewport'].map((one) => heightOf(page, one)));
             return chart >= (isLying ? 130 : 110) && picture >= 0.25 * height;
@@ -459,6 +459,51 @@ test('phones: a trend\'s chart is readable, its table fits, and the picture stay
         await shoot(page, `phone-trend-${name}`);
         const hidden = await page.locator('.trends .scroll').evaluate((e) => e.scrollWidth - e.clientWidth);
         assert.ok(hidden <= 0, `${name}: ${hidden} px of the table are hidden`);
+    }
+}));
+
+test('phones: charts that would be too low are shown one at a time, with a switch', options, () => withPage(PHONE, async (page) => {
+    await page.waitForFunction(() => globalThis.plantcast.session.recorded);
+    await page.evaluate(() => {
+        const { addTrend, session: { model }, showTrend } = globalThis.plantcast;
+        ['temperature', 'pressure', 'vibration'].map((name) => model.tags.find(({ group }) => group === name))
+            .forEach((tag, i) => (i === 0 ? showTrend : addTrend)(tag));
+    });
+    await page.waitForFunction(() => globalThis.plantcast.trends?.series.size === 3);
+    // Returns the number of charts, their least height, whether each has its whole height on the screen, and their units.
+    const charts = () => page.evaluate(() => {
+        const outer = document.getElementById('trend-chart').getBoundingClientRect();
+        const all = [...document.querySelectorAll('#trend-chart .uplot')].map((e) => e.getBoundingClientRect());
+        return { count: all.length, least: Math.min(...all.map(({ height }) => height)),
+            whole: all.every(({ top, bottom }) => top >= outer.top - 1 && bottom <= outer.bottom + 1),
+            units: globalThis.plantcast.trends.plots.flatMap(({ units }) => units) };
+    });
+    const choices = page.locator('#trend-charts label:visible');
+    for (const [width, height] of PHONES) {
+        const name = `${width}x${height}`, isLying = width > height;
+        await resize(page, { width, height });
+        await until(`${name}: charts that can be read`, async () => {
+            const { count, least, whole } = await charts();
+            return whole && least >= (isLying ? 130 : 100) && await choices.count() === (count === 1 ? 2 : 0);
+        }, 30);
+        await shoot(page, `phone-charts-${name}`);
+        if (!isLying)
+            continue;
+        for (const [i, units] of [['mm/s'], ['°C', 'bar']].entries()) {
+            await choices.nth(1 - i).tap();
+            await becomes(async () => (await charts()).units, units, name);
+        }
+        await page.locator('#trend-tags .name').last().tap(); // the chart of this tag
+        await becomes(async () => (await charts()).units, ['mm/s'], name);
+        await becomes(() => tooSmall(page), [], name);
+        await page.locator('#time-toggle').tap();
+        await page.locator('#time-slider').waitFor();
+        await becomes(async () => {
+            const { count, least, whole } = await charts(), picture = await heightOf(page, '#viewport');
+            return count === 1 && whole && least >= 120 && picture >= 0.25 * height && await choices.count() === 2;
+        }, true, `${name} with the time bar`);
+        await shoot(page, `phone-charts-${name}-time`);
+        await page.locator('#time-toggle').tap();
     }
 }));
 
@@ -487,8 +532,7 @@ test('phones: names and states are readable and complete, and controls are finge
     const rgb = (text) => text.match(/[\d.]+/g).slice(0, 3).map(Number);
     for (const [width, height] of HELD) {
         const name = `${width}x${height}`;
-        await page.setViewportSize({ width, height });
-        await page.waitForFunction((wide) => Math.abs(globalThis.plantcast.viewport.width - wide) < 2, width);
+        await resize(page, { width, height });
         const words = await page.evaluate(() => ['plant-name', 'health'].map((id) => document.getElementById(id))
             .filter((e) => e.clientWidth < 30 || e.scrollWidth > e.clientWidth + 1).map((e) => e.id));
         assert.deepEqual(words, [], name);

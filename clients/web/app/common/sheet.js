@@ -5,6 +5,8 @@
 import { byId, phone } from './dom.js';
 
 const GRIP_PX = 24, SLOP_PX = 8;
+// true if sheets are below the picture; sheets at its side have one height and no grip
+const isBelow = window.matchMedia('(max-width: 719px) and (min-height: 481px), (max-width: 480px)');
 const SHEETS = '.panel.open, .display.open, .alarms, .engineer, .assets, .stage > .card', CARDS = ['card', 'place'].map(byId);
 
 let drag = null; // drag: { y (where the drag began), moved (pixels so far, downwards) }; null: no drag
@@ -36,7 +38,7 @@ const isGrip = ({ clientX: x, clientY: y }) => [...document.querySelectorAll(SHE
 });
 
 document.addEventListener('pointerdown', (event) => {
-    if (!phone.matches || !isGrip(event) || event.target.closest('button, input'))
+    if (!isBelow.matches || !isGrip(event) || event.target.closest('button, input'))
         return;
     drag = { y: event.clientY, moved: 0 };
     event.stopPropagation();

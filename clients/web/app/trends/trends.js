@@ -24,6 +24,8 @@ const MOST = LOOKS.light.lines.length, UNITS_PER_PLOT = 2, FRESH_MS = 5000, NOW_
 const ALARM_ROWS = 2000, MATCHES = 30, MOST_BACK = 50, ALMOST_US = 2e6;
 const WALL_TEXT = 13; // minimum font size of charts on a video wall, in units of the page: 16 minutes of arc (wall.js)
 const HEAD_PX = 24, ROW_PX = 22; // heights in the table
+// minimum height of a phone's charts in CSS pixels; if all charts together have less room, the trend shows one at a time, with a switch
+const LEAST_CHART_PX = 100;
 // true: charts fill the space that the table leaves, in a video wall's trend pane or in a phone's sheet
 const fills = () => document.body.classList.contains('pane-trend') || phone.matches;
 
@@ -60,6 +62,7 @@ export class Trends {
     constructor(page) {
         const { session, overlay, handlers } = page;
         Object.assign(this, { page, session, tags: [], plots: [], focus: null, isAsking: false });
+        Object.assign(this, { turn: 0, isSwitched: false }); // turn: index of the chart shown while isSwitched (one chart at a time)
         Object.assign(this, { spanS: newSpanS(null), fixed: null, before: [] });
         this.unread = null; // the text in the range field, if it was not understood
         this.isChosen = false; // true: a user or a video wall's trend pane has set the time range; false: it is the default
@@ -145,6 +148,7 @@ export class Trends {
     setFocus(tag) {
         this.focus = tag;
         this.table.build();
+        this.turnTo(tag);
         this.redraw();
     }
 
@@ -206,9 +210,10 @@ export class Trends {
 
     // Adds a tag to the chart.
     add(tag) {
-        if (this.takes(tag))
+        if (this.takes(tag)) {
             this.setTags([...this.tags, tag]);
-        else if (this.isOpen && this.tags.length >= MOST)
+            this.turnTo(tag);
+        } else if (this.isOpen && this.tags.length >= MOST)
             this.note(say('trends.full', { count: MOST }));
         this.open();
     }
@@ -472,23 +477,61 @@ export class Trends {
         return this.plots[0]?.chart ?? null;
     }
 
+    // Units of each chart: [[unit, ...], ...].
+    get units() {
+        const all = [...new Set(this.tags.map((tag) => this.unitOf(tag) || '–'))];
+        return Array.from({ length: Math.ceil(all.length / UNITS_PER_PLOT) }, (_, i) =>
+            all.slice(i * UNITS_PER_PLOT, (i + 1) * UNITS_PER_PLOT));
+    }
+
+    // Returns true if the charts would be too low on this phone, so that the trend shows one at a time.
+    isTight(count) {
+        const { clientHeight: height } = byId('trend-chart');
+        return phone.matches && !document.body.classList.contains('wall') && height > 0 && height < LEAST_CHART_PX * count && count > 1;
+    }
+
     draw(uPlot) {
-        const units = [...new Set(this.tags.map((tag) => this.unitOf(tag) || '–'))];
-        const shape = JSON.stringify([units, this.theme, this.unit]);
+        const all = this.units, isSwitched = this.isTight(all.length), turn = Math.max(0, Math.min(this.turn, all.length - 1));
+        const units = isSwitched ? [all[turn]] : all, shape = JSON.stringify([all, isSwitched && turn, this.theme, this.unit]);
         const element = byId('trend-chart'), width = Math.max(200, element.clientWidth);
         if (shape !== this.shape) {
             this.drop();
             setChartUnit(this.unit, document.body.classList.contains('pane-trend') ? WALL_TEXT : 0);
-            const count = Math.ceil(units.length / UNITS_PER_PLOT), height = heightOf(count, this.tags.length);
-            this.plots = Array.from({ length: count }, (_, i) => new Plot({ view: this, element, width, height, isWide: units.length > 1,
-                isLast: i === count - 1, units: units.slice(i * UNITS_PER_PLOT, (i + 1) * UNITS_PER_PLOT) }));
-            Object.assign(this, { shape, shownTheme: this.theme, shownUnit: this.unit });
+            const height = heightOf(units.length, this.tags.length), isWide = units[0]?.length > 1;
+            this.plots = units.map((mine, i) => new Plot({ view: this, element, width, height, isWide, isLast: i === units.length - 1,
+                units: mine }));
+            Object.assign(this, { shape, turn, isSwitched, shownTheme: this.theme, shownUnit: this.unit });
+            this.showSwitch(isSwitched ? all : []);
         }
         const answered = this.tags.filter(({ name }) => this.series.has(name));
         const rows = answered.map((tag) => ({ tag, series: this.series.get(tag.name), alarms: this.alarms.get(tag.name) }));
         this.resize();
         for (const plot of this.plots)
             plot.show(uPlot, rows.filter(({ tag }) => plot.units.includes(this.unitOf(tag) || '–')), this.span, this.range);
+    }
+
+    // Shows the chart with this tag if the trend shows one chart at a time.
+    turnTo(tag) {
+        const turn = this.units.findIndex((units) => units.includes(this.unitOf(tag) || '–'));
+        if (turn < 0 || turn === this.turn)
+            return;
+        this.turn = turn;
+        if (this.isSwitched)
+            this.draw(globalThis.uPlot);
+    }
+
+    // Shows a switch with these charts, named by their units; hides it if there are none.
+    showSwitch(charts) {
+        const fieldset = byId('trend-charts'), names = charts.map((units, i) => [String(i), units.join(' · ')]);
+        if (JSON.stringify(names) !== fieldset.dataset.choices) {
+            fieldset.dataset.choices = JSON.stringify(names);
+            fillSegments(fieldset, 'trend-charts', names, (turn) => {
+                this.turn = Number(turn);
+                this.draw(globalThis.uPlot);
+            });
+        }
+        fieldset.hidden = charts.length === 0;
+        markSegment(fieldset, String(this.turn));
     }
 
     redraw() {
@@ -501,7 +544,7 @@ export class Trends {
     }
 
     resize() {
-        if (this.plots.length > 0 && this.unit !== this.shownUnit)
+        if (this.plots.length > 0 && (this.unit !== this.shownUnit || this.isTight(this.units.length) !== this.isSwitched))
             return this.draw(globalThis.uPlot);
         const width = byId('trend-chart').clientWidth, height = heightOf(this.plots.length, this.tags.length);
         for (const { chart } of this.plots)
