@@ -137,3 +137,36 @@ test('titles and current values of the alarm list and the journal are complete, 
         }
     }
 });
+
+// A phone's keyboard covers up to half of the screen.
+test('on phones the dialogue to shelve an alarm is complete, finger-sized and above the keyboard', options, async () => {
+    for (const lang of ['ko', 'de']) {
+        const { page, errors, close } = await openPage(`${url}?lang=${lang}`, PHONE);
+        try {
+            await waitForPicture(page);
+            await page.locator('#alarm-strip').tap();
+            for (const [width, height] of [[390, 844], [360, 640], [844, 390], [667, 375]]) {
+                await resize(page, { width, height });
+                await page.locator('[data-action="shelve"]').first().tap();
+                await page.locator('#shelve[open]').waitFor();
+                const name = `${lang} ${width}x${height}`;
+                await becomes(() => page.evaluate(() => {
+                    const dialogue = document.getElementById('shelve'), { top, bottom, left, right } = dialogue.getBoundingClientRect();
+                    const small = [...dialogue.querySelectorAll('button, select, input')].filter((e) => {
+                        const box = e.getBoundingClientRect();
+                        return box.width < 43.5 || box.height < 43.5 || box.left < left || box.right > right || box.bottom > bottom;
+                    });
+                    return { small: small.map(({ id }) => id),
+                        inside: top >= 0 && left >= 0 && right <= innerWidth && bottom <= innerHeight / 2,
+                        scrolls: dialogue.scrollHeight > dialogue.clientHeight || dialogue.scrollWidth > dialogue.clientWidth };
+                }), { small: [], inside: true, scrolls: false }, name);
+                await becomes(() => cutOff(page), [], name);
+                await shoot(page, `shelve-${lang}-${width}`);
+                await page.locator('#shelve-cancel').tap();
+            }
+            assert.deepEqual(errors, []);
+        } finally {
+            await close();
+        }
+    }
+});
