@@ -506,6 +506,14 @@ test('two times are compared side by side, with one camera', options, async () =
     const [left, right] = await Promise.all(['#viewport', '#compare-half'].map((id) => page.locator(id).boundingBox()));
     assert.ok(right.x >= left.x + left.width - 1 && Math.abs(right.width - left.width) < 8, JSON.stringify([left, right]));
     await shoot(page, 'compare');
+    await page.locator('#picture-toggle').click();
+    await page.locator('#picture-panel.open').waitFor();
+    await becomes(async () => {
+        const [panel, bar] = await Promise.all(['#picture-panel', '#compare-bar'].map((id) => page.locator(id).boundingBox()));
+        return panel.height > 150 && (panel.y + panel.height <= bar.y || panel.x >= bar.x + bar.width);
+    }, true, 'an open panel leaves the bar of the right half free');
+    await page.keyboard.press('Escape');
+    await page.locator('#picture-panel.open').waitFor({ state: 'detached' });
     await page.locator('#compare-bar button').click();
     await page.locator('#compare-half').waitFor({ state: 'detached' });
     await page.evaluate(() => globalThis.plantcast.session.setParams({ group: 'temperature' }));
