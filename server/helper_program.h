@@ -27,7 +27,9 @@ struct helper_params {
     int lent;            /* open descriptor of this process, such as a lock, that the program inherits as HELPER_LENT; 0: none */
     int timeout_s;       /* seconds after which the program is told to end; 30 s later it is killed; 0: no limit */
     size_t memory_bytes; /* memory limit in bytes, for each process of the program and for its whole cgroup; 0: no limit */
-    const char *timeout_option, *memory_option; /* names of the options that raise these limits, for messages to the user */
+    /* names of the command-line options that raise limit and memory limit, for messages to the user: timeout_option: of the
+       time limit; memory_option: of the memory limit */
+    const char *timeout_option, *memory_option;
 };
 
 /* Runs the program. Returns NULL on success; otherwise one line (mem_free): the program's last line on stderr, or the reason

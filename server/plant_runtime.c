@@ -170,8 +170,8 @@ bool plant_runtime_start_recording(struct plant_runtime *runtime, struct plant_r
 {
     if (before)
         store_adopt(runtime->services.store, before->services.store);
-    /* opens the lists of views, notes and so on, but not during a reload: until the switch, sessions of the old runtime change
-       these files, and the event loop opens them at the switch */
+    /* opens the lists of views, notes and so on only at the daemon's start. During a reload, sessions of the old runtime may
+       still change these files, so the event loop opens the lists later, when it switches to this runtime */
     if (!before)
         plant_runtime_open_lists(runtime);
     if (runtime->services.history_folder)

@@ -10,7 +10,9 @@
 static const int64_t WINDOW_NS = 60 * NS_PER_S, WAIT_NS = LOGIN_WAIT_S * NS_PER_S, LOG_INTERVAL_NS = 600 * NS_PER_S;
 enum { MAX_KNOWN_TOKENS = 8 };
 
-struct known_token { /* token that was accepted earlier from an entry's address; it is checked even while the address is throttled */
+/* token that was accepted earlier from the same client address; it is checked even while the address is throttled, so that
+   other users of the address cannot lock its holder out */
+struct known_token {
     uint8_t hash[TOKEN_HASH_BYTES];
     int64_t said_ns;
 };

@@ -36,7 +36,8 @@ enum quota {
 
 struct quotas {
     int64_t at[QUOTA_COUNT];
-    /* true: the limit was set on the command line. A per-address limit set there also applies to clients on this machine */
+    /* true: the limit was set on the command line. Clients on this machine are exempt from default limits per address, but not
+       from a per-address limit set on the command line */
     bool given[QUOTA_COUNT];
 };
 

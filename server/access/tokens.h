@@ -56,7 +56,7 @@ int tokens_parse_line(const char *line, struct token_holder *out, const char **w
 void tokens_hash(const char *token, uint8_t hash[TOKEN_HASH_BYTES]);
 /* Generates a token of 256 random bits. Returns false if the system's random number generator failed. */
 bool tokens_make(char token[TOKEN_MAX_CHARS + 1]);
-/* Appends the holder's line in the format of the token file. */
+/* Appends to `out` the line of the token file that describes the token's holder. */
 void tokens_print_line(struct text *out, const struct token_holder *holder);
 /* Returns true if the name is valid for a token's holder. */
 bool tokens_name_valid(const char *name);

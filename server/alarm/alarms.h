@@ -42,7 +42,9 @@ struct alarm {
     /* raised_mono_ns: monotonic time when the alarm was last raised; recent_ns: ring buffer of the last such times */
     int64_t raised_mono_ns, recent_ns[ALARM_RECENT];
     unsigned raised_count;
-    int older, newer; /* indices of the neighbours in the list of alarms sorted by last change; -1: none */
+    /* list of alarms sorted by their last change: older, newer: index of the alarm that changed before and after this one; -1:
+       none */
+    int older, newer;
     bool timed;       /* true: the alarm can change by the passing of time alone, so its index is in alarms->timed */
 };
 

@@ -47,7 +47,7 @@ void alarms_restore(struct alarms *alarms, int index, const struct alarm *saved,
     struct alarm from = *saved;
     if (from.until.utc_ns) /* if the shelving time is already over, ends shelving in 1 ns, that is in the next alarms_tick() */
         from.until.mono_ns = now.mono_ns + (from.until.utc_ns > now.utc_ns ? from.until.utc_ns - now.utc_ns : 1);
-    /* the alarm keeps its restored state until its tag's next sample, unless it is a BAD or LINK alarm */
+    /* held true: the alarm keeps its restored state until its tag's next sample; BAD and LINK alarms are never held */
     alarms->list[index].held = alarms->list[index].kind != ALARM_BAD && alarms->list[index].kind != ALARM_LINK;
     alarms->list[index].raised_mono_ns = now.mono_ns - (from.raised_utc_ns ? now.utc_ns - from.raised_utc_ns : 0);
     take(alarms, index, &from);

@@ -11,7 +11,7 @@ enum device_status { DEVICE_UNKNOWN, DEVICE_USABLE, DEVICE_GONE /* DEVICE_GONE: 
 struct alarm_device {
     char *name; /* name of the source, followed by the unit if the source has several: "plc1", "gateway/7" */
     int source, unit;
-    int usable, gone; /* number of the device's tags with status DEVICE_USABLE, and with DEVICE_GONE */
+    int usable, gone; /* usable: number of the device's tags with status DEVICE_USABLE; gone: with status DEVICE_GONE */
     int64_t back_ns;  /* monotonic time since when at least one tag of the device has been usable; 0: no tag is */
     int alarm;        /* index of the device's LINK alarm, which is raised when the device does not answer; -1: none */
     bool changed;     /* true: the status of a tag of the device changed since alarms.c last evaluated the device */

@@ -30,7 +30,8 @@ enum { CORE_ACT_BYTES = 200 * 1024 /* maximum length in bytes of an act (a user'
 enum { MAX_MESSAGE_BYTES = 64 << 20, TOKEN_BYTES = 256, WHY_BYTES = 300, LOOK_US = 200000, ADDRESSES = 8 };
 static const int64_t CONNECT_NS = 4 * NS_PER_S, CLOCKS_NS = 2 * NS_PER_S /* CLOCKS_NS: clock difference between core and renderer above
                                                                             which a warning is logged */;
-/* smaller differences between this machine's clock and the core's are not corrected, so that the clock on the pages does not jump */
+/* if the plant clock of this daemon (already adjusted to the core) differs from the core's clock by no more than this, it is
+   not adjusted again, so that the clock on the pages does not jump */
 static const int64_t STEP_NS = 500 * NS_PER_MS;
 /* limit on the network's delay: more delayed messages of the core are not used to compare the two machines' clocks */
 static const int64_t QUICK_NS = 100 * NS_PER_MS;
@@ -199,8 +200,9 @@ static void refuse(struct core_link *link, const char *why)
     end(link, why);
 }
 
-/* Restricts the connection to promises not to take the lead, which the leader needs. The leader's configuration differs from
-   this daemon's, so its readings cannot be used here. */
+/* Restricts the connection to one purpose: this standby promises the leader, when asked, not to take the lead. The leader needs
+   these promises to renew its lease. The readings that the leader sends cannot be used, because its configuration differs from
+   this daemon's. */
 static void stay_to_vote(struct core_link *link, const char *why)
 {
     char *said = link->hosts[link->turn.index].said[link->address], text[WHY_BYTES];

@@ -348,9 +348,10 @@ static void renew(struct lease_keeper *keeper)
     snprintf(standby, sizeof(standby), "%s", alone ? keeper->node : keeper->standby);
     memcpy(counts, keeper->lease.counts, sizeof(counts));
     pthread_mutex_unlock(&keeper->thread.lock);
-    /* Until the database confirms that the lease's row names another standby, no promise extends the lease. The row therefore
-       changes its standby only right after the database has confirmed a renewal. Otherwise, the order to leave maintenance
-       would end a leader whose database refuses changes. */
+    /* While the lease's row is being changed to name another standby, no standby's promise can extend the lease. So first
+       renews the lease with the old standby in the row, and changes the standby only if the database confirmed that. Otherwise
+       the leader could lose its lease, and so its lead, because an operator ended maintenance while the database refused
+       changes. */
     if (counts[0] && strcmp(counts, standby) != 0 && !renew_for(keeper, counts))
         return;
     if (!renew_for(keeper, standby))

@@ -16,11 +16,11 @@
 enum { GROUP = 64, GRAIN = 1024, MAX_PIECES = 96 };
 /* largest length of a piece (part of a triangle), relative to its distance to the nearest sensor; longer pieces are halved */
 #define STEP 0.3f
-/* STEP suffices to find the error of the interpolation shepard (inverse distance weighting) up to this power (exponent of the
-   distance); larger powers get proportionally shorter steps */
+/* exponent of the distance in the interpolation shepard (inverse distance weighting) up to which pieces of the length STEP are
+   short enough to find the error; with a larger exponent, pieces are shorter in proportion */
 #define MAX_POWER 2.0f
-/* For shepard, the error in a triangle is at most L^2 K / (6 d^2). L is its longest side, d its distance to the nearest sensor,
-   and K / d^2 a bound on the second derivative of the weights. */
+/* divisor in the bound of the interpolation error of shepard in a triangle, which is L^2 K / (6 d^2). L is the triangle's
+   longest side, d its distance to the nearest sensor, and K / d^2 a bound on the second derivative of the weights */
 #define SHEPARD_ACCEPTED 6.0f
 /* for interpolation paper (Algorithm 1 of Kim & Suh): longest side of a triangle that needs no samples, as a fraction of the
    distance to the nearest sensor and of the radius R */
@@ -32,7 +32,8 @@ enum { GROUP = 64, GRAIN = 1024, MAX_PIECES = 96 };
 /* A drawn frame may show data where the field has none, up to this far beyond the border of the data; a larger overlap counts
    as an error. Unit: steps of the byte scalar.lacking (encoded distance from that border) */
 #define BORDER_SLACK 4
-/* if interpolation errors affect at least this fraction of the area of a level of detail, all its vertices are given an error */
+/* if interpolation errors affect at least this fraction of the area of a level of detail, an error is stored for all vertices
+   of the level, even for those without an error of their own */
 #define MARK_ALL 0.75
 #define MIN_ERROR 1e-4f /* interpolation errors smaller than this are stored as 0 */
 
@@ -49,7 +50,8 @@ struct sampler { /* working memory of one thread that samples triangles */
     struct weights *weights; /* weights at the sample points */
     struct weights_terms terms;
     double values[KERNEL_BLOCK], total[KERNEL_BLOCK];
-    float *corners;        /* weights at the triangles' corners: [member of the sum (sensor)][3 corners of each of GROUP triangles] */
+    /* weights at the triangles' corners: [sensor, or other term of the sum][3 corners of each of GROUP triangles] */
+    float *corners;
     uint32_t *tris[GROUP]; /* vertex numbers of each triangle */
     float *errors[GROUP];  /* pointer for each triangle of the group to the element that receives its measured error */
     int pieces[GROUP];
@@ -338,7 +340,8 @@ static float accepted_of(const struct weights *weights)
     return PAPER_ACCEPTED;
 }
 
-/* Writes the fractions of the level's area whose error is at least 1, 1/2, 1/4, ..., and returns the largest error. */
+/* Writes to erring[b] the fraction of the level's area on which the error of values is at least 2^-b (1, 1/2, 1/4 and so on).
+   Returns the largest error. */
 static float find_erring(const struct asset_view *file, const struct asset_level *level, const float *errors, float erring[WEIGHTS_ERRING])
 {
     double areas[WEIGHTS_ERRING] = { 0 }, all = 0;

@@ -19,8 +19,8 @@ static const double FAST_FACTOR = 2;
 static const double STILL_PART = 0.1; /* the plant counts as unchanged if it changes per hour by less than this multiple of the noise */
 static const double MEAN_PART = 0.25; /* noise of an hourly mean, relative to that of a single reading: 1/4 if the mean has at least
                                          16 independent readings */
-/* A jump shows as the difference between two averages of residuals. First: number of hours in each average. Second: number of
-   hours left out between the two. */
+/* A jump at a row shows as the difference between two averages of residuals, one before and one after the row. First constant:
+   number of hours in each average. Second constant: number of hours between the two averages, which neither includes. */
 enum { BESIDE = 3, WITHIN = 2 };
 /* smallest jump of the residuals to be found, as a multiple of the usual difference between two such averages */
 static const double MIN_JUMP_FACTOR = 6;

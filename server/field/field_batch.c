@@ -35,7 +35,8 @@ void field_update_all(struct field *field, const int *assets, const size_t *coun
         if (field_begin_update(field, state, snapshot, counts[i]) && state->update)
             together.states[begun++] = state;
     }
-    /* update_is_light() is called only after all updates have begun, because beginning an update may evict cached weights of another */
+    /* calls update_is_light() only after all updates have begun: it needs the state's cached weights complete, and the beginning of
+       another state's update may still evict them */
     for (size_t i = 0; i < begun; i++)
         if (update_is_light(together.states[i]))
             together.states[together.count++] = together.states[i];

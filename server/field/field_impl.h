@@ -55,8 +55,9 @@ void field_cache_remove_state(struct field *field, struct field_state **link);
    limit. Evicts the oldest entries first; each search covers an eighth of the time span of last uses, so that searches are
    rare. Returns false if the bytes do not fit. */
 bool field_cache_make_room(struct field *field, size_t need, const struct field_params *keep, uint64_t before);
-/* Starts caching the columns of these weights (each sensor's weights at all vertices) if they have been summed before.
-   previous: tick of their previous use. */
+/* Starts caching the columns of these weights (each sensor's weights at all vertices) if the weights were already used in an
+   earlier sum. previous: tick of the use of the weights before the current one; to make room, only cache entries last used
+   before that tick are evicted. */
 void field_cache_keep_columns(struct field *field, struct weights *weights, const struct field_params *params, uint64_t previous);
 /* Frees every state (computed field) and weights object made from this layout, whose sensors are at positions that a user tries
    out. */

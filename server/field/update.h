@@ -33,9 +33,9 @@ void update_rule(const struct field_state *state, const struct state_input *inpu
    sensors. total: sum of the vertex's weights; marked: sum of the weights of Uncertain sensors, 0 if there are none. */
 void update_flags(const struct field_state *state, const struct weights *weights, size_t vertex, double total, double marked,
                   struct scalar *at);
-/* Returns the height of the smallest hot spot that a sensor at distance near_m would show. A hot spot of size s (the group's
-   hot_spot_m) has the shape exp(-D^2 / (2 s^2)) around its centre, so a sensor at distance D reads only that fraction of its
-   height. */
+/* Returns by how much the centre of a hot spot must exceed its surroundings, in the unit of the field, for a sensor at distance
+   near_m to show it. A hot spot of size s (the group's hot_spot_m) has the shape exp(-D^2 / (2 s^2)) around its centre, so a
+   sensor at distance D reads only that fraction of the excess. */
 float update_blind(const struct plant_group *group, float near_m);
 
 #endif

@@ -242,9 +242,9 @@ void weights_copy_known(struct weights *weights, const struct weights *from)
     if (!same_sensors(weights, from))
         return;
     unsigned shared = KNOWN_NEAR;
-    /* Copies only those results of `from` that are also valid here. If all strengths are equal, only power
-       and decay can differ. The array `top`, which scales weights, depends on neither; nor do the sums of weights (`total`) of
-       the interpolation paper. */
+    /* Copies those results of the weights `from` that are also valid for `weights`. If all sensors have the same strengths in
+       both, only power and decay can differ. The array `top`, which scales weights, depends on neither; nor do the sums of
+       weights (`total`) of the interpolation paper. */
     if (same_strengths(weights, from))
         shared |= KNOWN_TOP | (weights->interpolation == INTERPOLATION_PAPER ? KNOWN_TOTAL : 0);
     for (size_t block = 0, at = 0; at < weights->layout->vertex_count; block++, at += KERNEL_BLOCK) {

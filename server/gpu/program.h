@@ -7,7 +7,8 @@
 #include "base/log/log.h"
 
 struct program_params {
-    const char *vertex, *fragment; /* names of embedded shader files; NULL if `compute` is set */
+    /* names of the embedded files of vertex shader and fragment shader; NULL if `compute` names a compute shader instead */
+    const char *vertex, *fragment;
     const char *compute;
     const char *defines; /* source lines such as #define to insert before the shader's source; NULL: none */
 };

@@ -256,8 +256,8 @@ static void take(struct history_pair *pair, const struct history_point *there, i
         pair->after = point;
 }
 
-/* Returns true if the file may have the tag's point before or after the requested time that other files did not have. month:
-   month of the requested time. */
+/* Returns true if this file must be searched for a tag, because the files searched before lack the tag's point before the
+   requested time or the point after it, and this file's month may have that point. month: month of the requested time. */
 static bool is_searched(const struct month_file *file, const struct history_pair *pair, int month)
 {
     return (file->month <= month && pair->before.t_us == INT64_MIN) || (file->month >= month && pair->after.t_us == INT64_MIN);

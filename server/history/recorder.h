@@ -11,9 +11,9 @@ struct recorder_rows { /* rows to be recorded; zero-initialise; free `at` with m
 };
 
 struct recorder;
-/* Creates a recorder. begin_us: time from which samples are recorded. Recordings of earlier runs end before it with a point
-   without a value, so a sample with an earlier time does not tell a tag's quality from begin_us on. INT64_MIN: the samples are
-   imported; between samples, values do not count as unchanged. */
+/* Creates a recorder. begin_us: time from which samples are recorded. Until a tag has a sample later than begin_us, its quality
+   counts as unknown, because recordings of earlier runs end with a point without a value. INT64_MIN: the recorder is for
+   imported samples; for these, a value never counts as unchanged during a silence between two samples. */
 struct recorder *recorder_create(const struct plant *plant, int64_t begin_us);
 void recorder_destroy(struct recorder **recorder); /* Frees the recorder and sets *recorder to NULL; accepts a pointer to NULL. */
 /* Passes a sample to its tag's filter, and appends to `kept` the rows that must now be recorded. If the previous sample had

@@ -10,8 +10,8 @@
 
 struct history_bucket {
     int64_t t_us; /* start time of the bucket; a multiple of its length */
-    /* smallest and largest value within the bucket, including its ends, on the line that joins the tag's points; NaN: no usable
-       value */
+    /* low: smallest value within the bucket, including its ends, on the line that joins the tag's points; high: largest such
+       value; NaN: the bucket has no usable value */
     double low, high;
     double mean; /* mean over the part of the bucket's time that has a value */
     /* first: value at the bucket's start (before any step there) or, if no line leads into the bucket, of its first point;

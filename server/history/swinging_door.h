@@ -22,8 +22,8 @@ struct swinging_door { /* zero-initialise */
     struct history_point anchor;  /* point recorded last */
     struct history_point held;    /* newest sample that left the deadband; recorded when a later one does not fit the swinging door */
     struct history_point skipped; /* newest sample, if it stayed within the deadband around the last sample that left it */
-    /* slopes, in units per microsecond, of the steepest and the flattest line from the anchor (point recorded last) that passes
-       all later samples within the deviation */
+    /* slopes, in units per microsecond, of lines from the anchor (point recorded last) that pass all later samples within the
+       deviation. slope_low: of the flattest such line; slope_high: of the steepest */
     double slope_low, slope_high;
 };
 

@@ -53,8 +53,8 @@ static bool same_places(const struct frame *frame, const struct known_markers *k
     return true;
 }
 
-/* Returns the next label in `labels` of an arrow (arrows true) or of an isoline, from index *at on, and advances *at; NULL:
-   there are no more. */
+/* Returns the first label in `labels`, from index *at on, that belongs to an arrow (arrow true) or to an isoline (false), and
+   sets *at to the index after it; NULL: there is none. */
 static const struct frame_label *next_label(const struct frame_label *labels, size_t count, size_t *at, bool arrow)
 {
     while (*at < count && labels[*at].arrow != arrow)

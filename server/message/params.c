@@ -178,8 +178,8 @@ bool params_parse(const struct plant *plant, const json_t *o, struct params_chan
            params_parse_paint(o, out, error) && visibility_parse(plant, o, out, error);
 }
 
-/* Changes the group (quantity) that a view shows, and sets that group's default parameters. A view of values relative to alarm
-   limits stays one. */
+/* Changes the group (quantity) that a view shows, and sets that group's default parameters. If the view shows values relative
+   to alarm limits (SHOW_OPERATOR), it continues to do so. */
 static void take_group(const struct scene *scene, int group, bool is_operator, struct view *view)
 {
     field_params_default(scene->plant, group, &view->field);

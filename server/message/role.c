@@ -118,7 +118,8 @@ bool role_may_save(enum role role, const char *address, struct message_error *er
     struct view_address fields;
     struct message_error wrong;
     bool good = true;
-    /* an unreadable view address may be saved, because the server never shows it */
+    /* if the view's address cannot be parsed, any role may save it, because the server never draws a picture for such an
+       address */
     if (view_address_read(&fields, address, &wrong))
         for (size_t i = 0; i < fields.count && good; i++)
             good = role_may_ask(role, fields.args[i], error);

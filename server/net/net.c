@@ -209,7 +209,8 @@ bool net_settle_answers(struct net *net)
 {
     struct server_context *server = &net->server;
     struct kept_answers *answers = &server->kept_answers;
-    /* a finished write may have changed views, notes and other lists that are sent to clients */
+    /* true: at least one queued change was written to disk, so views, notes or other lists that are sent to clients may have
+       changed */
     bool changed = file_writer_collect(server->params.file_writer);
     if (answers->waiting) {
         answers->waiting = false;
@@ -559,7 +560,8 @@ void net_destroy(struct net **net_ptr)
     if (!net)
         return;
     lws_sul_cancel(&net->timer);
-    /* first destroys the services that have threads of their own, because these threads wake the event loop */
+    /* destroys the services that have threads of their own before the libwebsockets context, because these threads wake the
+       event loop through that context */
     history_queries_destroy(&net->server.history_queries);
     picture_signer_destroy(&net->server.signing.signer);
     history_loader_destroy(&net->server.history_loader);

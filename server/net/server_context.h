@@ -62,7 +62,8 @@ struct server_context {
         /* monotonic time when the quality of a reading next changes because of its age; INT64_MAX: never */
         int64_t next_change_ns;
         bool *links_up; /* by source: true: the data source is connected */
-        /* true: a change of readings, or of connections to data sources, was not announced to streams and renderers yet */
+        /* data_changed: readings have changed since streams and renderers were last informed; links_changed: the same for
+           connections to data sources */
         bool data_changed, links_changed;
     } readings;
     struct history_queries *history_queries; /* NULL: nothing is recorded */

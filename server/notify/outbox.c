@@ -144,7 +144,8 @@ static void tell(struct outbox *outbox, struct episode *episode, const struct no
 static void advance(struct outbox *outbox, struct episode *episode, int64_t now_us)
 {
     const struct plant_notify *notify = outbox->plant->notify;
-    /* the start of the alarm's episode would be in the future: the wall clock was set back since */
+    /* the alarm's episode begins in the future: the wall clock was set back after the episode began, so the episode is made to
+       begin now */
     if (episode->began_us > now_us + OUTBOX_REPEAT_US)
         episode->began_us = now_us;
     for (size_t i = 0; i < notify->rule_count; i++) {
@@ -266,7 +267,8 @@ void outbox_tick(struct outbox *outbox, int64_t now_us)
     }
     for (size_t i = 0; i < outbox->plant->notify->recipient_count; i++) {
         struct recipient_box *box = &outbox->boxes[i];
-        /* age never drops messages to Alertmanager, because each has all present alarms */
+        /* a message to Alertmanager is never given up because of its age: each such message has the present state of all
+           alarms, so it does not become outdated */
         bool keeps = outbox->plant->notify->recipients[i].kind == NOTIFY_ALERTMANAGER;
         if (!keeps && box->batch_count > 0 && box->attempts > 0 && now_us - box->batch_us > OUTBOX_KEEP_US)
             give_up(outbox, box);

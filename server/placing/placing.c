@@ -179,7 +179,7 @@ static void on_distances(void *arg, struct relocation_result *result)
 static void to_file(const struct scene_asset *asset, const double plant_m[3], double out[3])
 {
     double file_from_plant[16];
-    /* the placement has an inverse: plant_load() refuses other placements of assets */
+    /* transform_invert() cannot fail here: plant_load() refuses assets whose placement has no inverse */
     if (!transform_invert(asset->placement, file_from_plant))
         memcpy(file_from_plant, transform_identity, sizeof(file_from_plant));
     transform_point(file_from_plant, plant_m, out);

@@ -18,7 +18,7 @@ size_t plant_sensors(const struct plant *plant, int asset, struct plant_sensor *
     const struct plant_asset *of = &plant->assets[asset];
     size_t count = 0;
     double asset_from_plant[16];
-    /* the placement has an inverse: plant_load() refuses other placements of assets */
+    /* transform_invert() cannot fail here: plant_load() refuses assets whose placement has no inverse */
     if (!transform_invert(of->placement, asset_from_plant))
         memcpy(asset_from_plant, transform_identity, sizeof(asset_from_plant));
     for (size_t i = 0; i < plant->tag_count; i++)

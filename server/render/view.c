@@ -38,8 +38,8 @@ void view_default_scale(const struct scene *scene, struct view *view)
     field_default_range(scene, &view->field, &view->range_min, &view->range_max);
     view->ramp_interval = 0;
     memset(&view->color_scale, 0, sizeof(view->color_scale));
-    /* logarithmic, because the quantity shown (size of the smallest hot spot that a sensor detects) grows as exp(D^2) with the
-       distance D from the sensor */
+    /* the scale is logarithmic in the view of blind spots: its value (how much hotter than its surroundings a spot must be to be
+       detected) grows as exp(D^2) with the distance D from the nearest sensor */
     view->color_scale.log = view->field.show == SHOW_BLIND;
     if (view->field.show != SHOW_VALUE)
         return;

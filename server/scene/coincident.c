@@ -8,8 +8,8 @@
 #include "base/mem.h"
 #include "plant/models/transform.h"
 
-/* tolerances within which two faces count as coplanar: distance in metres, and difference of their unit normals; both follow
-   from the accuracy of CAD positions stored as floats */
+/* two faces count as coplanar if the distance of their planes is at most SAME_PLANE_M metres and the components of their unit
+   normals differ by at most SAME_NORMAL; both follow from the accuracy of CAD positions stored as floats */
 static const double SAME_PLANE_M = 2e-4, SAME_NORMAL = 1e-3;
 static const double MIN_AREA_M2 = 1e-4, MIN_OVERLAP_M = 1e-3;
 /* shift of an asset towards the viewer per step of its rank, as a fraction of its distance. It exceeds the depth error of

@@ -12,9 +12,9 @@
  * */
 static const double VERTICAL_TILT = 1e-3;
 static const double DEFAULT_ASPECT = 16 / 9.0; /* aspect ratio that the initial view in the plant file is made for */
-/* size of the surroundings shown around a sensor, as a fraction of the asset's size */
+/* side of the cube shown around a sensor, as a fraction of the longest side of the asset's bounding box */
 static const double SENSOR_PART = 0.35;
-static const double SENSOR_MIN_M = 0.3, SENSOR_MAX_M = 3; /* smallest and largest size of the surroundings shown around a sensor */
+static const double SENSOR_MIN_M = 0.3, SENSOR_MAX_M = 3; /* limits in metres on the side of the cube shown around a sensor */
 /* elevation angle of the camera above a sensor that it looks at, as a tangent */
 static const double SENSOR_RISE = 0.36;
 

@@ -39,7 +39,8 @@ struct scene {
     struct scene_asset *assets; /* assets of the plant, by index in plant->assets */
     size_t asset_count;
     double bounds_min_m[3], bounds_max_m[3]; /* bounding box of the main part (scene/main_part.h), in the plant frame */
-    /* box of all assets including stray pieces (scene/main_part.h); min equal to max: same as bounds_min_m, bounds_max_m */
+    /* bounding box of all assets including stray pieces (scene/main_part.h), in the plant frame; whole_min_m equal to
+       whole_max_m: the same box as bounds_min_m, bounds_max_m */
     double whole_min_m[3], whole_max_m[3];
     struct scene_outside {
         size_t triangles; /* number of triangles outside the plant's main part (scene/main_part.h) */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Queue of deferred request groups, oldest first. One frame answers all requests of a group, but it cannot be drawn yet. */
+/* Queue of deferred groups of requests, oldest group first. All requests of a group are answered by the same frame. A group is
+   deferred if that frame cannot be drawn yet, for example because its field is not computed. */
 #include "service/deferred_requests.h"
 
 #include <string.h>

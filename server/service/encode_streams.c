@@ -8,7 +8,8 @@
 #include "base/math/search.h"
 #include "base/mem.h"
 
-/* minimum time between key frames that are encoded only to let clients join an encode stream; doubled for clients that often fall behind */
+/* JOIN_NS: minimum time between key frames that are encoded only to let clients join an encode stream. It is doubled, up to
+   JOIN_MAX_NS, for clients that often fall behind. */
 static const int64_t JOIN_NS = 2 * NS_PER_S, JOIN_MAX_NS = 64 * NS_PER_S;
 /* maximum number of packets that a client may lag behind its stream and still get all that it missed; also the maximum number
    of frames that are planned but not encoded yet */

@@ -39,7 +39,8 @@ struct frame_request {
     bool alone;  /* true: the frame must be encoded so that it can be decoded without earlier packets */
     bool depth;  /* true: the client gets the frame's depth grid (render/depth_grid.h) */
     bool record; /* true: the frame includes the record of what it was drawn from (render/frame_record.h), for signing; PNG only */
-    /* texts and signs drawn over the model. FULL: legend, clock, sensors and alarms; BARE: legend and clock */
+    /* texts and signs drawn over the model. OVERLAY_NONE: none; FULL: legend, clock, sensors and alarms; BARE: only legend and
+       clock */
     enum { OVERLAY_NONE, OVERLAY_FULL, OVERLAY_BARE } overlay;
 };
 

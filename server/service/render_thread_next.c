@@ -3,8 +3,9 @@
 #include "base/clock.h"
 #include "service/render_thread_impl.h"
 
-/* How long a client's changed readings wait for the refined frame that is being drawn for the client. Then that frame is given
-   up for a preview with the new readings, and the time doubles, so that a refined frame is finished eventually. */
+/* OWN_DATA_NS: how long a client's changed readings wait for the refined frame that is being drawn for the client. Then that
+   frame is given up for a preview with the new readings. Each time, the wait doubles, up to OWN_DATA_MAX_NS, so that a refined
+   frame is finished eventually. */
 static const int64_t OWN_DATA_NS = 1 * NS_PER_S, OWN_DATA_MAX_NS = 16 * NS_PER_S;
 /* minimum ratio of pixels between a long job (a frame drawn in steps) and a frame that may overtake it: memory suffices for a
    large and a small frame, but not for two large ones */
@@ -67,9 +68,9 @@ static bool goes_before(const struct render_thread *thread, const struct render_
     return !other || has_had_less(client, other, scheduler_share(urgency));
 }
 
-/* If one client waits for a refined frame and another for a snapshot over HTTP, keeps only the one to be served first: both
-   kinds are charged together. Without this choice, the refined frames of an address, one after the other, would keep its
-   snapshots waiting as long as another address's large frame is drawn. The caller holds the lock. */
+/* Refined frames and snapshots over HTTP share one account of drawing time. If one client waits for a refined frame and another
+   for a snapshot, removes from `first` the client that was charged more. Otherwise, an address that requests refined frames
+   without a pause would always delay its own snapshots by another address's large frame. The caller holds the lock. */
 static void choose_long(struct render_client **first)
 {
     struct render_client **refined = &first[URGENCY_REFINE], **snapshot = &first[URGENCY_SNAPSHOT];

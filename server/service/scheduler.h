@@ -11,12 +11,14 @@
 enum urgency { URGENCY_INPUT, URGENCY_DATA, URGENCY_REFINE, URGENCY_SNAPSHOT, URGENCY_COUNT };
 
 struct scheduler {             /* zero-initialise */
-    int64_t input_ns, long_ns; /* monotonic times when the last frame for an input, and the last long-running frame, were finished */
+    /* input_ns: monotonic time when the last frame for an input was finished; long_ns: the same for the last long-running frame */
+    int64_t input_ns, long_ns;
     /* data_next: the next frame is drawn for changed readings; step_next: the next turn draws a step of a long-running frame */
     bool data_next, step_next;
 };
 
-/* Kinds of frames that are charged separately: previews for inputs and readings; long-running frames. */
+/* Kinds of frames that are charged separately. SCHEDULER_MOVING: previews for inputs and for changed readings. SCHEDULER_LONG:
+   long-running frames, that is, refined frames and snapshots over HTTP. */
 enum { SCHEDULER_MOVING, SCHEDULER_LONG, SCHEDULER_SHARES };
 /* Returns the kind of frames (SCHEDULER_MOVING or SCHEDULER_LONG) to which the drawing time of such a request is charged. */
 int scheduler_share(enum urgency urgency);

@@ -18,7 +18,8 @@ struct held {
     /* true: the tag is lost, and its last value must not be used although it is recent (store_tags_dead()) */
     bool dead;
     int64_t sampled_mono_ns;                   /* monotonic time of the tag's last sample, whether Good or Bad */
-    int64_t received_mono_ns, received_utc_ns; /* arrival time of the tag's last usable value, on the monotonic clock and in UTC */
+    /* arrival time of the tag's last usable value: received_mono_ns: on the monotonic clock; received_utc_ns: in UTC */
+    int64_t received_mono_ns, received_utc_ns;
     int64_t changed_mono_ns;                   /* monotonic time at which a usable value last differed from the one before */
     int64_t stale_ns, flatline_ns;
     /* A quality tag decides the quality of a list of other tags. first_vouched: index of the first tag whose quality this tag

@@ -143,7 +143,8 @@ enum id_token_fault id_token_verify(const char *token, const struct id_token_exp
 
 static const json_t *at_path(const json_t *claims, const char *path)
 {
-    /* first looks for a claim whose name is the whole path, because a claim's name may be a URL, which contains dots */
+    /* the path of a claim is its name, or names of nested objects joined by dots; first looks for a claim whose name is the
+       whole path, because such a name may be a URL, which contains dots itself */
     const json_t *whole = json_object_get(claims, path);
     char *copy = mem_strdup(path), *rest = copy;
     const json_t *found = claims;

@@ -76,9 +76,9 @@ static bool has_room(const struct openid *openid, const uint8_t address[16])
     return openid->codes.count < OPENID_CODES && of_address < OPENID_CODES_OF_ADDRESS;
 }
 
-/* Classifies a log-in that the provider ended with an error: the user was refused, or the provider failed. The error does not
-   count as a wrong token. Anyone can send such errors, so the audit trail records at most one per ERROR_EVERY_NS: the result is
-   then OPENID_REFUSED. For the others it is OPENID_AWAY, which is not recorded. The caller holds the lock. */
+/* Returns the result of a log-in that the provider ended with an error, which is not counted as a wrong token. The first such
+   error in each ERROR_EVERY_NS gives OPENID_REFUSED, which the audit trail records; all others give OPENID_AWAY, which it does
+   not. So nobody can fill the audit trail by sending such errors. The caller holds the lock. */
 static enum openid_result judge_error(struct openid *openid, int64_t now_ns)
 {
     if (openid->error_ns && now_ns - openid->error_ns < ERROR_EVERY_NS)

@@ -9,7 +9,8 @@
 #include "access/openid/id_token.h"
 #include "access/openid/openid.h"
 
-/* maximum number of authorization codes waiting to be exchanged for tokens: in total, and per client address */
+/* OPENID_CODES: maximum number of authorization codes waiting to be exchanged for tokens; OPENID_CODES_OF_ADDRESS: the same for
+   one client address */
 enum { OPENID_CODES = 64, OPENID_CODES_OF_ADDRESS = 16 };
 
 struct openid_job { /* a queued request to the provider: exchange the authorization code that a browser brought back, or revoke a token */
@@ -37,10 +38,11 @@ struct openid {
     counter *good, *people, *refused, *foreign;
     /* changed: a user's rights changed since the last openid_take_changed(); failing: the log already reports that the provider fails */
     _Atomic bool stopping, changed, failing;
-    /* held while the provider's metadata and keys are requested; a thread that holds `lock` must not lock it */
+    /* mutex held while the provider's metadata and keys are requested; a thread that already holds the mutex `lock` must not
+       lock this one */
     pthread_mutex_t asking;
     /* --- below: protected by `asking` */
-    /* monotonic times when the provider's keys (jwks) and metadata (discovered) were last requested; 0: never */
+    /* jwks_ns: monotonic time when the provider's keys were last requested; discovered_ns: the same for its metadata; 0: never */
     int64_t jwks_ns, discovered_ns;
     /* --- below: protected by `lock` */
     pthread_mutex_t lock;

@@ -155,8 +155,8 @@ bool openid_complete(struct openid *openid, json_t *claims, const char *access_t
     bool lacks = !id_token_has_groups(openid->config, claims) || !json_object_get(claims, openid->config->name_claim) ||
                  !id_token_name(openid->config, claims, name, sizeof(name));
     bool asks = url && access_token && lacks;
-    /* the provider was not asked: the claims are complete only if they come from an ID token (which has `iss`); a refresh may
-       not return one */
+    /* if the provider is not asked, the claims are complete only if they come from an ID token, which always has the claim
+       `iss`; the provider may answer a token refresh without an ID token */
     *told = !asks && json_object_get(claims, "iss");
     if (asks && openid_get(openid->config, url, access_token, &openid->stopping, &reply) && reply.status == 200) {
         const char *sub = json_string_value(json_object_get(claims, "sub")), *its = json_string_value(json_object_get(reply.json, "sub"));

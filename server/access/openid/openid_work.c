@@ -9,7 +9,8 @@
 #include "base/mem.h"
 #include "message/names.h"
 
-/* how often the provider's metadata and keys are requested: while they are unknown, and once they are known */
+/* interval between two requests for the provider's metadata and keys. RETRY_DELAY_NS: while they are unknown;
+   CHECK_INTERVAL_NS: once they are known */
 static const int64_t RETRY_DELAY_NS = 5 * NS_PER_S, CHECK_INTERVAL_NS = 3600 * NS_PER_S;
 static const int at_once[OPENID_TASKS] = {
     [OPENID_TASK_CODE] = 4, [OPENID_TASK_CHECK] = 16, [OPENID_TASK_REVOKE] = 1, [OPENID_TASK_DISCOVER] = 1

@@ -73,8 +73,8 @@ void lab_shade(const uint8_t rgb[3], double offset, uint8_t out[3])
     memcpy(out, rgb, 3);
     if (offset == 0)
         return;
-    /* near the gamut boundary, sRGB has no colour at the whole offset: tries smaller and smaller offsets of L* with the same
-       hue and chroma */
+    /* near the border of the sRGB gamut, the colour shifted by the whole offset of L* may not exist in sRGB: tries smaller and
+       smaller parts of the offset, with the same hue and chroma */
     for (int step = 0; step < 24; step++, reach -= 1.0 / 24) {
         lab[0] = lightness + reach * offset;
         if (rgb_from_lab(lab, out))

@@ -188,12 +188,12 @@ size_t decompressed_size(const void *compressed, size_t bytes)
 
 struct decompressor {
     const uint8_t *bytes; /* compressed bytes */
-    size_t size, at;      /* number of compressed bytes in `bytes`, and position of the next chunk among them */
+    size_t size, at;      /* size: number of compressed bytes in `bytes`; at: position of the next chunk among them */
     size_t left;          /* number of uncompressed bytes in the chunks from position `at` on */
     ZSTD_DCtx *zstd;
     uint8_t *planes;        /* a chunk in its layout */
     uint8_t *chunk;         /* bytes of a decompressed chunk of which the caller has read only a part so far */
-    size_t filled, read_to; /* number of bytes in `chunk`, and number of these that the caller has read */
+    size_t filled, read_to; /* filled: number of bytes in `chunk`; read_to: number of these that the caller has read */
 };
 
 struct decompressor *decompressor_create(const void *compressed, size_t bytes)

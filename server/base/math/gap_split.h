@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Separates the main part of a model or plant from stray pieces, such as a vertex left at the origin of survey coordinates.
-   Rule: a gap is an interval along one axis that contains no corner of a triangle. Pieces beyond a gap are stray if the gap is
-   at least as long as the main part, provided that all stray pieces together have at most 2 % of the area. Beyond a gap at
-   least 100 times as long they are stray whatever their area. A triangle that crosses such a gap is stray too. Crossing
-   triangles are kept if they have more than 2 % of the area and end at several places on the far side: such a long pipe belongs
-   to the pieces that it connects. The main part is the side with the larger area. A simpler rule, the box of 98 % of the area,
-   would crop flare stacks, pipe racks and tanks at the edge of a plant. They have less than 2 % of the area but stand next to
-   the rest. It would also keep a stray box 7,000 km away that has a third of the area of a small model. Call from any thread.
-   */
+   Rule: a gap is an interval along one axis that contains no corner of a triangle. The main part is the side of the gap with
+   the larger area. Pieces on the other side are stray if the gap is at least as long as the main part, provided that all stray
+   pieces together have at most 2 % of the area. If the gap is at least 100 times as long as the main part, they are stray
+   whatever their area. A triangle that crosses such a gap is stray too. But if the crossing triangles have more than 2 % of the
+   area and end at several places on the far side, they are kept: such a long pipe belongs to the pieces that it connects. A
+   simpler rule, the box of 98 % of the area, would crop flare stacks, pipe racks and tanks at the edge of a plant. They have
+   less than 2 % of the area but stand next to the rest. It would also keep a stray box 7,000 km away that has a third of the
+   area of a small model. Call from any thread. */
 #ifndef BASE_MATH_GAP_SPLIT_H
 #define BASE_MATH_GAP_SPLIT_H
 #include <stddef.h>

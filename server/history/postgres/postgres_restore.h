@@ -25,9 +25,9 @@ void postgres_restore_init(struct postgres_restore *restore, struct log *log, co
 /* Ends the recording of all tags in the database: writes a point without a value after each tag's last point, because its
    values are unknown from then on. Returns false if the server fails. */
 bool postgres_restore_end_lines(struct postgres_tables *tables, int64_t now_us);
-/* Corrects where recordings end in the database (a point without a value) between the last sample received from the former
-   leader and our own first sample. If the former leader recorded a tag after the connection was lost, the tag's recording then
-   ends at its true last point. Returns false if the server fails. */
+/* Corrects in the database, between from_us (last sample received from the former leader) and to_us (our own first sample),
+   where recordings end. A recording ends with a point without a value. If the former leader recorded further points of a tag
+   after such an end, the end is moved behind the tag's last point. Returns false if the server fails. */
 bool postgres_restore_end_span(struct postgres_tables *tables, int64_t from_us, int64_t to_us);
 /* Copies the points of all tags between two times from the database to the files, in place of the gap there. Returns false if
    the server fails or the files cannot be written (logged, reason in `why`). */

@@ -11,7 +11,8 @@
 /* HTTP answers up to this size are exempt from an address's quota on unread bytes: memory suffices for one such answer on each
    permitted connection */
 enum { SMALL_BYTES = 64 * 1024 };
-enum { HEAD_BYTES = 8192 }; /* room for the headers of an answer with the longest list of allowed origins (256 characters each) */
+/* bytes reserved for an answer's headers; suffices for the longest list of allowed origins, of 256 characters each */
+enum { HEAD_BYTES = 8192 };
 
 static const char *const security[][2] = {
     { "x-content-type-options:", "nosniff" },

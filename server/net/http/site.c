@@ -116,7 +116,8 @@ static void set_etag(struct site_form *form)
 /* Returns the bytes compressed as gzip; bytes is NULL if compression would save less than a tenth. */
 static struct site_form compressed(const struct site_form *plain)
 {
-    enum { GZIP_WINDOW = MAX_WBITS + 16, MEMORY_LEVEL = 9 }; /* zlib: adding 16 to the window bits selects the gzip header */
+    /* GZIP_WINDOW: for zlib, window bits plus 16 select the gzip format; MEMORY_LEVEL: 9, the most memory and best compression */
+    enum { GZIP_WINDOW = MAX_WBITS + 16, MEMORY_LEVEL = 9 };
     z_stream stream = { .next_in = (Bytef *)plain->bytes, .avail_in = (uInt)plain->count };
     struct site_form gzip = { .count = plain->count - plain->count / 10 };
     if (deflateInit2(&stream, Z_BEST_COMPRESSION, Z_DEFLATED, GZIP_WINDOW, MEMORY_LEVEL, Z_DEFAULT_STRATEGY) != Z_OK)

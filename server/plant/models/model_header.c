@@ -269,7 +269,8 @@ bool model_header_read(struct model_header *header, const char *path, char *why,
     bool good = version && version[0] == '2';
     if (!good)
         wrong(walk.why, "is not glTF 2.0: its asset.version is '%.20s'", version ? version : "");
-    else if (!model_rules_check(root, invalid)) /* must run before members of the document are looked up, because it may delete some */
+    /* model_rules_check() must run before members of the document are looked up below, because it may delete members */
+    else if (!model_rules_check(root, invalid))
         good = wrong(walk.why, "is not valid: %.*s", MODEL_WHY_BYTES - 20, invalid);
     walk.nodes = json_object_get(root, "nodes");
     walk.meshes = json_object_get(root, "meshes");

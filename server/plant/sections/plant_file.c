@@ -181,7 +181,8 @@ static void read_asset(struct yaml_reader *reader, yaml_node_t *node, struct pla
     int errors = reader->diag->errors;
     bool is_map = yaml_map_read(reader, node, "an asset", keys, &record, &map);
     *asset = record.asset;
-    /* multiplies the unit by the placement's scale, because distances on the asset are measured at its size in the plant */
+    /* multiplies the model's length unit (metres per unit) by the placement's scale, because distances on the asset are
+       measured at its size in the plant */
     asset->unit_m *= record.scale;
     transform_compose(record.translate_m, record.rotate_deg, asset->placement);
     if (!is_map)

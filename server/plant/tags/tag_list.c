@@ -297,7 +297,7 @@ static void check_overlaps(const struct plant *plant, struct diag *diag)
         if (registers_of(plant, &plant->tags[i]) > 0)
             tags[count++] = (int)i;
     qsort_r(tags, count, sizeof(*tags), by_register, (void *)(uintptr_t)plant);
-    const struct plant_tag *one = NULL; /* tag before `two` in the same Modbus table whose last register is highest */
+    const struct plant_tag *one = NULL; /* tag before `two` (sorted by register) whose registers reach farthest */
     for (size_t i = 0; i < count; i++) {
         const struct plant_tag *two = &plant->tags[tags[i]];
         bool same = one && one->source == two->source && plant_tag_modbus_unit(plant, one) == plant_tag_modbus_unit(plant, two) &&

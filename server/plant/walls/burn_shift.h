@@ -5,10 +5,10 @@
 #define PLANT_WALLS_BURN_SHIFT_H
 #include <stdint.h>
 
-#define BURN_SHIFT_PX 3 /* maximum shift in pixels in each direction */
+#define BURN_SHIFT_PX 3 /* maximum shift of a display's content, in pixels to the left, right, up and down */
 
 struct burn_shift {
-    int x_px, y_px; /* offset in pixels, to the right and down, by which a display's content is shifted */
+    int x_px, y_px; /* shift of a display's content in pixels: x_px to the right, y_px down; negative: to the left, up */
 };
 /* Returns the shift of the displays at a time of the plant's clock. All displays of a wall use the same time, so their contents move
    together. */

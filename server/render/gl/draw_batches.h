@@ -51,7 +51,8 @@ struct draw_batches { /* zero-initialise, then set log */
     struct draw_instance *instances;
     /* commands: draw commands in the order in which they were added; sorted: the same commands, ordered by batch */
     struct draw_command *commands, *sorted;
-    uint32_t *batch_of, *place_of;          /* by index in `commands`: index of the command's batch, and the command's index in `sorted` */
+    /* by index in `commands`: batch_of: index of the command's batch; place_of: the command's index in `sorted` */
+    uint32_t *batch_of, *place_of;
     /* by model: index of its most recently made batch, the first element of the list that draw_batch.older links */
     size_t *newest;
     size_t instance_count, command_count;

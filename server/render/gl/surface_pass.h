@@ -7,8 +7,9 @@
 #include "render/gl/occlusion.h"
 #include "render/frame_context.h"
 
-/* Features compiled into a shader program, or'ed. Each draw call uses the program with the fewest features, since a software GL
-   runs every branch. RICH: isolines and non-linear scales; RICH without FIELD: the surface is grey. */
+/* Features compiled into a shader program, combined by bitwise or. Each draw call uses the program with the fewest features
+   that it needs, since a software GL runs every branch. FIELD: colours of a field. RICH: also isolines and non-linear scales;
+   RICH without FIELD: the surface is grey. */
 enum surface_variant {
     SURFACE_FIELD = 1,
     SURFACE_RICH = 2,

@@ -21,7 +21,8 @@ struct light_set {
     uint64_t id; /* unique, never reused; 0: empty */
     struct light_key key;
     double texture_from_plant[16]; /* matrix from plant coordinates to texture coordinates and depth of sun_map */
-    double texel_m, depth_m;       /* side of a texel, and range of depths, of sun_map in metres */
+    /* texel_m: side of a texel of sun_map in metres; depth_m: distance in metres from depth 0 to depth 1 of sun_map */
+    double texel_m, depth_m;
     GLuint sun_map;
     GLuint ground; /* texture of the ground in the format RG8: visible part of the sun, and openness (visible part of the sky) */
     struct pool *pool;

@@ -5,8 +5,9 @@
 #define RENDER_SKY_H
 #include "render/frame_context.h"
 
-/* Size of the backdrop texture. Columns: elevation above the horizon. Rows: dither offset of the pixel in its 4x4 square, for the light
-   theme, then for the dark one. */
+/* Size of the backdrop texture. SKY_BACKDROPS: number of columns, one per elevation above the horizon. SKY_ROUNDINGS: number of
+   dither offsets, one per pixel of a 4x4 square. SKY_ROWS: number of rows, one per dither offset for the light theme, then the
+   same for the dark one. */
 enum { SKY_BACKDROPS = 2048, SKY_ROUNDINGS = 16, SKY_ROWS = 2 * SKY_ROUNDINGS };
 struct sky {
     GLuint sky_program, ground_programs[2]; /* ground_programs: by enum tier */

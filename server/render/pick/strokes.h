@@ -6,7 +6,8 @@
 #define RENDER_PICK_STROKES_H
 #include "render/pick/arrows.h"
 
-enum { STROKE_POINTS = 12, STROKES_MOST = 100 }; /* maximum number of points of a stroke (short streamline), and of strokes of an asset */
+/* STROKE_POINTS: maximum number of points of a stroke (short streamline); STROKES_MOST: of strokes on an asset */
+enum { STROKE_POINTS = 12, STROKES_MOST = 100 };
 
 struct stroke_point {
     struct direction_place place;

@@ -17,8 +17,9 @@ struct fields_entry {
     struct field_params params;
     double step;            /* smallest difference of values that is visible in the colours (scale_step) */
     uint64_t flags_version; /* scalars->flags_version of the shown values */
-    /* value of scalars->travel (sum of all changes so far) when the shown values were computed, less the error known then. `scalars->travel
-       - travel` is an upper bound of the error of any shown value */
+    /* value of scalars->travel (sum of the largest changes of all versions) at the version that the shown values come from; if
+       the shown values already deviated from that version, the deviation is subtracted. So scalars->travel - travel is an upper
+       bound of the error of any shown value */
     double travel;
     uint64_t content; /* hash of the first `hashed` values in `shown`: the values that the last fields_get() requested */
     size_t hashed;    /* number of values in `shown` that the hash `content` covers; SIZE_MAX: `content` is out of date */

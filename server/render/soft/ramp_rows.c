@@ -8,7 +8,9 @@
 
 #include "base/mem.h"
 
-enum { WHOLE = 8 }; /* number of bits in one colour channel: materials are compared by all of their bits */
+/* number of bits in one colour channel; as the value of ramp_search.bits: materials count as equal only if all bits of all
+   their colours are equal */
+enum { WHOLE = 8 };
 
 struct ramp_search {
     const uint32_t *muted, *own;

@@ -89,8 +89,8 @@ SOFT_INLINE void setup_init(struct setup *setup, const struct soft_vertex v[3], 
         setup_patterns(setup, &slopes, v, patterns);
 }
 
-/* Returns the marks (colour codes, soft_impl.h) of eight pixels that show the field. a, b: column and row of the colour map. w: 1 /
-   inverse_w at the pixels, used only if the face needs perspective correction. */
+/* Returns the marks (colour codes, soft_impl.h) of eight pixels that show the field. a, b: column and row of the colour map. w:
+   reciprocal of the interpolated inverse_w at the pixels; used only if the face needs perspective correction. */
 SOFT_INLINE lanes_int field_marks(const struct setup *setup, const struct mark_ink *ink, lanes a, lanes b, lanes w)
 {
     lanes none = { 0 }, x = none + setup->a.dx, y = none + setup->a.dy;

@@ -9,8 +9,8 @@
 #include "render/soft/ramp_rows.h"
 #include "render/soft/tones.h"
 
-/* default memory limits of the visibility buffers that are kept for recolouring: room for about five previews and ten refined frames of
-   1920x1080 */
+/* default memory limits of the visibility buffers that are kept for recolouring. PREVIEWS_BYTES: for previews, room for about
+   five of 1920x1080; REFINED_BYTES: for refined frames, room for about ten */
 static const size_t PREVIEWS_BYTES = (size_t)128 << 20, REFINED_BYTES = (size_t)256 << 20;
 
 /* Returns the kernels of the widest instruction set that this machine has. */

@@ -18,7 +18,9 @@ struct channel_last { /* ring buffer of the last samples of one measured quantit
 };
 
 struct channel { /* estimate for the connection to one client; zero-initialise; a member that is 0 was not measured yet */
-    int64_t rtt_ns[2], rtt_begin_ns; /* minimum round trip: [0] in the current measuring window, [1] in the one before; 0: not measured */
+    /* rtt_ns: minimum round trip: [0] in the current measuring window, [1] in the one before; 0: not measured. rtt_begin_ns:
+       monotonic time when the current window began */
+    int64_t rtt_ns[2], rtt_begin_ns;
     double ns_per_byte; /* nanoseconds that the network needs per byte, smoothed; reacts faster to a slowdown than to a recovery */
     double lag_ns;      /* delay added by the network: time from sending to acknowledgement, minus round trip and decoding, smoothed */
     double decode_ns;   /* decoding time of a frame in nanoseconds, as reported by the client, smoothed */

@@ -24,7 +24,8 @@ struct pacer_flight {
     uint32_t seq;
     size_t bytes;
     bool written;                /* true: all bytes of the frame were written to the socket */
-    int64_t sent_ns, written_ns; /* monotonic times when the frame's first byte and its last byte were written */
+    /* sent_ns: monotonic time when the frame's first byte was written to the socket; written_ns: its last byte */
+    int64_t sent_ns, written_ns;
     struct pacer_note note;
 };
 

@@ -21,10 +21,10 @@ struct quality_ladder { /* chooses the quality and size of one client's frames; 
     double unit_bytes;  /* estimated size in bytes of a frame of the best quality (step 0), smoothed */
     bool reprojects;    /* true: the client reprojects its newest picture to the present camera, so fewer and better frames suffice */
     bool known;         /* true: at least one frame was acknowledged, so unit_bytes is measured */
-    /* monotonic times since which these conditions have held: the network can carry a better step; client and server can handle
-       a larger picture; decoding takes too long. 0: the condition does not hold now */
+    /* monotonic time since which a condition has held; 0: it does not hold now. good_since_ns: the network can carry a better
+       step; easy_since_ns: client and server can handle a larger picture; bad_since_ns: decoding takes too long */
     int64_t good_since_ns, easy_since_ns, bad_since_ns;
-    int64_t up_ns, down_ns; /* monotonic times of the ladder's last step up and last step down */
+    int64_t up_ns, down_ns; /* up_ns: monotonic time of the ladder's last step up; down_ns: of its last step down */
     /* time in nanoseconds that conditions must hold before the ladder may step up again; doubles if the last step up did not
        hold */
     int64_t patience_ns;

@@ -79,7 +79,8 @@ struct crossing_lists {
     struct mesh_edit_insertion *by_edge;
     uint32_t *by_tri;
     uint32_t *target; /* by mesh point: index of the point that replaces it when points are merged */
-    /* by point (after merging): lists of the points to which an edge from this point is requested; NULL: no edge is requested */
+    /* edges requested from each point (after merging): the points to which point p must get an edge are
+       partners[partner_first[p]] to partners[partner_first[p + 1] - 1]. NULL: no edge is requested */
     uint32_t *partner_first, *partners;
     /* by point after replacement: 1 + its index in the triangulation of the current face; 0: the triangulation does not have it */
     uint32_t *slot;

@@ -9,8 +9,9 @@
 #include "base/mem.h"
 #include "surface/repair/parts_impl.h"
 
-/* A wall is a face where two bodies touch, so its triangles occur twice in the model. At least this fraction of its area must; below 1,
-   because a slit in one of the two layers leaves single triangles. */
+/* A wall is a face where two bodies touch, so the model has its triangles twice, once for each body. Minimum fraction of a
+   patch's area that must occur twice for the patch to count as a wall. It is below 1, because a slit in one of the two layers
+   leaves triangles that occur only once. */
 #define MIN_DOUBLED_SHARE 0.75
 #define OF_THICKNESS 0.5
 #define MIN_REACH 0.05 /* smallest reach, in tolerances */

@@ -143,8 +143,8 @@ static bool have_an_edge(const struct seams *s, uint32_t p, uint32_t q)
     return false;
 }
 
-/* Returns whether point p, at distance_m from an end of edge e, is treated as that end of the edge. Hanging vertices (vertices that lie
-   inside an edge, not at its end) in one line stay separate points, however near each other they are. */
+/* Returns whether point p, at distance_m from an end of edge e, is treated as that end of the edge. If both are hanging
+   vertices of e (vertices that lie inside an edge, not at its end), they stay separate points, however near each other. */
 static bool is_at_end(const struct seams *s, uint32_t p, uint32_t e, uint32_t end, double distance_m, double length_m)
 {
     if (distance_m > max_of(REPAIR_AT_END * length_m, s->end_m))
@@ -244,9 +244,9 @@ void repair_seams(struct trimesh *mesh, double tolerance_m, uint32_t *target, st
     size_t target_count = mesh->point_count;
     for (uint32_t i = 0; i < target_count; i++)
         target[i] = i;
-    /* Rounds 0 and 1 close exact fits only (points within a hundredth of the tolerance). Their edges are then no longer borders
-     * when rounds 2 and 3 close gaps, and are not pulled to a neighbour. Round 1 does not insert a point that is on an edge by
-     * chance: it would split the edge into pieces too short to be closed. */
+    /* Rounds 0 and 1 close only gaps of at most a hundredth of the tolerance; rounds 2 and 3 close wider gaps. Edges closed in
+       rounds 0 and 1 are then no longer borders, so that rounds 2 and 3 cannot pull them to a wrong neighbour. Round 1 does not
+       insert a point that is near an edge by chance: that would split the edge into pieces too short to be closed. */
     for (int round = 0; round < 4; round++) {
         struct borders borders;
         borders_init(&borders, mesh);

@@ -32,7 +32,9 @@ struct sparkplug_node {
     int next_seq;
     int64_t asked_ns;      /* monotonic time of the last birth request; 0: never */
     bool is_wanted;        /* true: a request for the birth certificate must be sent once ASK_NS have passed since the last one */
-    struct alias *aliases; /* sorted by number, then by topic, because some nodes number the metrics of each device from 1 */
+    /* aliases of the node and its devices, sorted by number, then by topic: the topic distinguishes devices, because some nodes
+       number the metrics of each device from 1 */
+    struct alias *aliases;
     size_t alias_count, alias_capacity;
 };
 

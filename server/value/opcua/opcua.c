@@ -10,7 +10,7 @@
 #include "value/opcua/opcua_client.h"
 #include "value/source_impl.h"
 
-/* time limit for opening a session, and for subscribing to all nodes */
+/* CONNECT_NS: time limit for opening a session; SUBSCRIBE_NS: time limit for subscribing to all nodes */
 static const int64_t CONNECT_NS = 15 * NS_PER_S, SUBSCRIBE_NS = 60 * NS_PER_S;
 /* SERVE_NS: maximum duration of one wait for new values; RETRY_NS: interval between repeated requests for nodes that the server refused */
 static const int64_t SERVE_NS = NS_PER_S, RETRY_NS = 30 * NS_PER_S;

@@ -15,7 +15,8 @@
 #include "value/opcua/opcua_impl.h"
 
 enum { TIMEOUT_MS = 5000, CLOSING_MS = 300, CHANNEL_MS = 3600000, SESSION_MS = 60000 };
-/* limits on one message from the server: bytes, chunks, and bytes of the connection's receive and send buffers, which bound one chunk */
+/* limits on one message from the server: MESSAGE_BYTES: its size; CHUNKS: number of its chunks; BUFFER_BYTES: size of the
+   connection's receive and send buffers, and so of a chunk */
 enum { MESSAGE_BYTES = 2 << 20, CHUNKS = 512, BUFFER_BYTES = 65536 };
 /* maximum number of attempts to list the server's endpoints; each attempt after the first follows a request that the server refused */
 enum { DISCOVERIES = 3 };

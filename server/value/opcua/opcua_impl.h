@@ -23,7 +23,8 @@ struct opcua_client {
     UA_EndpointDescription endpoint; /* endpoint of the server that was chosen for the connection, whose certificate has been checked */
     bool lost;                       /* true: the subscription has ended, so a new session is needed */
     bool missed;                     /* true: notifications of changed values were lost since all nodes were last read */
-    uint32_t max_items, max_reads;   /* maximum number of nodes per request, when monitoring and when reading; 0: not known yet */
+    /* max_items: maximum number of nodes per request to monitor nodes; max_reads: per request to read values; 0: not known yet */
+    uint32_t max_items, max_reads;
     UA_UInt32 subscription;
     double publishing_ms; /* the server's publishing interval in milliseconds if it is longer than the requested one; 0: it is not */
     char **namespaces;    /* namespace URIs of the server, by namespace index */

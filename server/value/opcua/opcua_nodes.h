@@ -8,7 +8,8 @@
 #include "plant/plant.h"
 
 struct opcua_node {
-    const char *name_space, *id; /* namespace URI, and identifier in the namespace, such as s=NAME; owned by the plant */
+    /* name_space: namespace URI of the node; id: its identifier in the namespace, such as s=NAME; owned by the plant */
+    const char *name_space, *id;
     const int *tags;             /* indices in plant->tags of the tags that take their values from the node */
     size_t tag_count;
     int sampling_ms; /* sampling interval in milliseconds: the shortest that any of the node's tags requests */
