@@ -25,7 +25,8 @@ enum { MAX_FIRST_VIEWS = 16 }; /* maximum number of views drawn with the new pla
 static const int64_t SETTLE_NS = NS_PER_S;
 /* FOLLOW_NS: how long a renderer waits for its core to switch to the new plant; LOOK_NS: interval at which it checks this */
 static const int64_t FOLLOW_NS = 120 * NS_PER_S, LOOK_NS = 20 * NS_PER_MS;
-enum { WAIT_MS = 3000 };       /* how long to wait for another program to finish changing the plant's folder, in milliseconds */
+/* time limit in milliseconds: a reload waits this long for another program to finish changing the plant's folder */
+enum { WAIT_MS = 3000 };
 
 struct reload {
     const struct plant_runtime_context *context;
@@ -456,7 +457,7 @@ static void import_locked(struct reload *reload, struct import_order *order, int
                                               .stop = is_cancelled,
                                               .arg = reload };
     struct import_job *job = import_job_begin(&params);
-    if (order->anew) /* an import that creates a new plant file keeps the present plant's data source */
+    if (order->anew) /* keeps the present plant's data source if the import creates a new plant file */
         order->source = import_source_of_plant((*reload->runtime)->plant);
     char *remark, *why = import_job_run(job, order, &remark);
     if (!why) {

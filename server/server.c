@@ -37,7 +37,7 @@
 #include "version.h"
 
 enum { TOKEN_FILE_BYTES = 1 << 24 };
-enum { SETTLE_MS = 3000 }; /* how long to wait for an import that is replacing files, in milliseconds */
+enum { SETTLE_MS = 3000 }; /* time limit in milliseconds: the start waits this long for an import that is replacing files */
 
 struct server {
     struct server_params params;
@@ -640,7 +640,7 @@ static int check_prepared(const struct server_params *params, const struct plant
     struct scene *scene = plant_runtime_open_scene(log, params, plant);
     int status = scene ? 0 : 1;
     for (size_t i = 0; scene && i < scene->asset_count; i++)
-        /* a missing asset is an error; the reason was logged when the scene was opened */
+        /* counts a missing asset as an error; its reason was logged when the scene was opened */
         status |= scene->assets[i].missing != NULL;
     if (scene) {
         size_t count;

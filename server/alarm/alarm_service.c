@@ -37,7 +37,8 @@ struct alarm_service {
     pthread_mutex_t queue_lock; /* lock of the sample queue; may be taken while holding the store's lock */
     /* --- below: protected by queue_lock */
     struct alarm_event_queue queue;
-    /* the service's own thread. Its lock protects the members below; its holder may also take the store's lock */
+    /* the service's own thread. Its lock protects the members below; a thread that holds this lock may also take the store's
+       lock */
     struct thread thread;
     /* --- below: protected by thread.lock */
     struct alarms *alarms;

@@ -8,7 +8,7 @@
 #include "base/clock.h"
 #include "encode/encoder_impl.h"
 
-/* if more than this fraction of a frame changed, the whole frame is encoded, which is cheaper than its rectangles */
+/* fraction of a frame's pixels: if more have changed, the whole frame is encoded, which is cheaper than encoding rectangles */
 static const double MAX_DIRTY_SHARE = 0.6;
 static const struct encoder_impl *const table[] = {
     &jpeg_impl,

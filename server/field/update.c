@@ -16,7 +16,8 @@
 #define FLAG 255
 /* error as a fraction of the colour range; vertices of triangles that may be drawn with a larger error are marked uncertain */
 #define DRAWN_ERROR (1 / 255.0)
-/* a newly chosen error limit is stricter than necessary by this factor, so that it stays valid when readings change slightly */
+/* factor by which a newly chosen limit on errors is stricter than necessary, so that it stays valid when readings change
+   slightly */
 #define ERROR_MARGIN 1.1
 /* state->error_limit (error above which a vertex is marked uncertain) is replaced if it is stricter than necessary by more than
    this factor */
@@ -29,8 +30,8 @@
 #define STEP_LIMIT 1e6
 /* number of updates after which everything is summed again, which keeps the accumulated rounding below 1e-9 of the range */
 #define MAX_ADDED 4096
-/* an update is divided among threads in pieces of about this much work, estimated in nanoseconds: less is not worth waking
-   another thread */
+/* estimated work, in nanoseconds, of one of the pieces into which an update is divided for the threads; less work is not worth
+   waking a thread */
 #define JOB_WORK 30000.0
 /* estimated work in nanoseconds below which the update of an asset stays on one thread, while several assets are updated in
    parallel */
@@ -200,7 +201,7 @@ void update_begin(struct field_state *state, size_t count)
     update->sums_all = !state->sums || update->flags || state->added >= MAX_ADDED || !steps_are_small(update);
     for (size_t i = 0; i < update->all.count; i++)
         update->marks |= update->all.marked[i];
-    /* no input changed: computes only new blocks, and leaves those with values unchanged */
+    /* if no input changed: computes only new blocks, and leaves the blocks that have values unchanged */
     if (!update->sums_all && update->changed.count == 0)
         update->next = update->old;
     update_rule(state, state->now, &update->rule);
@@ -226,7 +227,7 @@ static uint8_t uncertain_of(double marked, double total, uint8_t filled)
 void update_flags(const struct field_state *state, const struct weights *weights, size_t vertex, double total, double marked,
                   struct scalar *at)
 {
-    /* if the field shows SHOW_BLIND, vertices around lost sensors (those without a usable reading) have data, too */
+    /* vertices around lost sensors (those without a usable reading) have data, too, if the field shows SHOW_BLIND */
     bool blind = state->params.show == SHOW_BLIND;
     bool fill = blind || state->params.fill == FILL_NEIGHBOURS, filled = fill && weights->place[vertex] == PLACE_LOST;
     at->no_limits = weights->place[vertex] == PLACE_NO_LIMITS ? FLAG : 0;
@@ -272,7 +273,7 @@ static bool sum_block(const struct update *update, size_t block, size_t begin, s
     weights_add(weights, begin, count, &update->all, &sums);
     for (size_t j = 0; total_wanted && j < count; j++)
         weights->total[begin + j] = (float)total[j];
-    if (total_wanted) /* known totals (sums of weights) are not rewritten, because other threads may be reading them */
+    if (total_wanted) /* does not write totals (sums of weights) that are known already, because other threads may be reading them */
         weights->known[block] |= KNOWN_TOTAL;
     return flags && set_flags(update, begin, count, total, marked);
 }

@@ -26,7 +26,8 @@
 enum {
     QUEUE_MAX = 4000000,   /* maximum number of samples in struct historian_queue, which is emptied once a second */
     WAITING_MAX = 4000000, /* maximum number of recorded rows kept in memory while the disk cannot be written */
-    /* if more recorded points than this are uncompressed, month_file_tidy() runs early, because readers load them all into memory */
+    /* number of uncompressed recorded points above which month_file_tidy(), which compresses them, runs early: readers load all
+       uncompressed points into memory */
     TIDY_ROWS = 1000000,
     /* marker in the queue, in place of a tag's index: from here on, samples come from this daemon's own store (it became the leader) */
     TAG_LEADS = -1,
@@ -36,8 +37,8 @@ enum {
 };
 static const int64_t TICK_NS = NS_PER_S, TIDY_NS = 1200 * NS_PER_S, KEEP_NS = 60 * NS_PER_S, STEP_NS = 2 * NS_PER_S,
                      LOOK_NS = 20 * NS_PER_MS;
-/* when the daemon ends, Good readings whose newest sample is at least this old are recorded once more, so that their values
-   hold until then */
+/* Age in microseconds. When the daemon ends, it records every Good reading once more whose newest sample is at least this old.
+   Otherwise the tag's recorded line would end at that sample. */
 static const int64_t REPEAT_US = 10 * US_PER_S;
 
 struct historian_queue {
@@ -476,7 +477,7 @@ static int write_all(struct historian *historian, int64_t mono_ns, int64_t utc_n
     int error = write_spooled(historian);
     if (!error && !historian->file) {
         if (!historian->waiting.count)
-            return 0; /* if there are no rows to write, does nothing, so that no empty history folder is created */
+            return 0; /* does nothing if there are no rows to write, so that no empty history folder is created */
         make_folder(historian);
     }
     if (!error && !historian->recovered)
@@ -563,7 +564,7 @@ static void tick(struct historian *historian, bool last)
 {
     const struct now now = look_at_clocks();
     int64_t mono_ns = now.mono_ns, utc_ns = now.utc_ns, step_ns = watch_clock(historian, &now);
-    /* a standby's samples have the leading daemon's times, so steps of the standby's own clock do not matter */
+    /* ignores steps of a standby's own clock, because its samples have the leading daemon's times */
     step_ns = historian->stands_by ? 0 : step_ns;
     take_events(historian, &now, step_ns);
     if (!historian->stands_by)

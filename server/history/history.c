@@ -522,7 +522,7 @@ static void tidy_gaps(struct history_gaps *gaps, int64_t from_us, int64_t to_us)
     gaps->count = kept;
 }
 
-/* also reads the last file before from_us, because a gap noted there may extend beyond from_us */
+/* begins with the last file before from_us, because a gap in recording that is noted there may extend beyond from_us */
 int history_gaps(struct history_reader *reader, int64_t from_us, int64_t to_us, struct history_gaps *out)
 {
     size_t count;

@@ -126,7 +126,8 @@ static int fit_unit(struct month_file *file, int tag)
     static const char *const columns[][2] = { { "sample", "v" },     { "recent", "v" },    { "held", "v" },
                                               { "rollup", "low" },   { "rollup", "high" }, { "rollup", "mean" },
                                               { "rollup", "first" }, { "rollup", "last" }, { "outbox", "v" } };
-    /* a file from a time when PostgreSQL was configured has an outbox (points to send there), whose values must be converted, too */
+    /* true: the file has an outbox (points to send to PostgreSQL), because PostgreSQL was configured when the file was written;
+       the values there must be converted, too */
     bool has_outbox;
     int error = month_has_outbox(file, &has_outbox);
     size_t count = sizeof(columns) / sizeof(columns[0]) - !has_outbox;

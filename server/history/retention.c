@@ -18,7 +18,8 @@ static const char *const parts[] = { "", "-wal", "-shm" };
 /* CUT_BYTES: maximum number of bytes deleted from a month in one call, because the recording thread has to wait */
 enum { PARTS = sizeof(parts) / sizeof(parts[0]), CUT_BYTES = 16000000 };
 static const int64_t NEWEST_US = 600 * US_PER_S; /* the size limit never deletes the last ten minutes of history */
-#define CUT_BELOW 0.01 /* this fraction of the size limit is freed on top, so that the limit is not soon reached again */
+/* fraction of the size limit that is freed in addition when the limit is exceeded, so that it is not soon exceeded again */
+#define CUT_BELOW 0.01
 
 static char *path_of(const char *folder, int month, int part)
 {

@@ -23,7 +23,8 @@ static const char HEAD[] = "plantcast spool 1\n";
 enum {
     PLACES = 3,
     RESERVE_BYTES = 8 << 20,
-    /* the reserve file (disk space kept for a spool file) is created only if the free disk space is this many times its size */
+    /* multiple of the reserve file's size (disk space kept for a spool file): the reserve file is created only if this much
+       disk space is free */
     PLENTY = 10
 };
 

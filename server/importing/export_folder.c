@@ -134,7 +134,7 @@ struct export_upload *export_upload_begin(const char *folder, const char *name, 
     upload->fd = mkostemp(upload->hidden, O_CLOEXEC);
     *error = upload->fd < 0 ? -errno : 0;
     if (upload->fd < 0) {
-        mem_free(upload->hidden); /* there is no hidden file to remove, because it could not be created */
+        mem_free(upload->hidden); /* forgets the hidden file's name: the file could not be created, so it must not be removed */
         upload->hidden = NULL;
         export_upload_abandon(&upload);
     }

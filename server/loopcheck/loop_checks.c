@@ -228,7 +228,7 @@ static int append(struct file_job *job)
         good = fseek(file, 0, SEEK_END) == 0 && fputc('\n', file) != EOF;
     good = good && fwrite(row->at, 1, row->length, file) == row->length && fflush(file) == 0 && fsync(fileno(file)) == 0;
     int error = good ? 0 : -errno;
-    /* after an error, removes the incomplete row, because the caller reports the check as not stored */
+    /* removes an incomplete row after a write error, because the caller reports the check as not stored */
     if (!good && size >= 0 && ftruncate(fileno(file), size) != 0)
         log_err(own->log, "%s: %s", own->path, strerror(errno));
     fclose(file);

@@ -49,7 +49,7 @@ int handed_socket_callback(struct lws *wsi, enum lws_callback_reasons reason, vo
         return 0;
     struct server_context *server = server_context_of(wsi);
     if (atomic_load(&lws_container_of(server, struct net, server)->stopping)) {
-        /* a daemon that is stopping accepts no connections: they wait in the listening socket until the next start */
+        /* stops accepting connections while the daemon stops: new ones wait in the listening socket until the next start */
         lws_rx_flow_control(wsi, 0);
         return 0;
     }

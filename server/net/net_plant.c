@@ -22,7 +22,7 @@ bool net_open_signer(struct net *net)
 void net_limit_services(struct server_context *server)
 {
     struct plant_services *services = &server->params.plant;
-    /* a renderer has no history of its own: it queries its core */
+    /* true: recorded history can be read, in this machine's folder or from the core; a renderer has no history of its own */
     bool recorded = services->history_folder || (services->core_link && !services->scene->plant->history.off);
     if (!recorded)
         services->snapshot_cache = NULL;

@@ -29,7 +29,8 @@ static void tell_changes(struct server_context *server)
 /* Returns the monotonic time at which the next snapshot is due even if no reading changes. */
 static int64_t next_ns(const struct server_context *server)
 {
-    /* 1 ms after a reading becomes stale (too old to be Good), because the event loop may wake up slightly early */
+    /* adds 1 ms to the time when a reading becomes stale (too old to be Good), because the event loop may wake up slightly
+       early */
     int64_t stale_ns = server->readings.next_change_ns < INT64_MAX ? server->readings.next_change_ns + NS_PER_MS : INT64_MAX;
     return later(stale_ns, server->readings.snapshot->taken_mono_ns + READINGS_INTERVAL_NS);
 }
@@ -66,7 +67,7 @@ int64_t net_update_readings(struct net *net, int64_t now_ns)
         net->readings_ns = later(now_ns + GATHER_NS, server->session_context.changed_ns + READINGS_INTERVAL_NS);
     if (server->streams.count == 0 && !server->core.renderers)
         return INT64_MAX;
-    /* a request took a snapshot, but its changes were not announced yet */
+    /* announces the changes in a snapshot that a request took since the last call */
     if (server->readings.data_changed || server->readings.links_changed) {
         int64_t due_ns = next_ns(server);
         tell_changes(server);

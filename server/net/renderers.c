@@ -319,8 +319,8 @@ static bool send_refusal(const struct server_context *server, struct renderer_pe
     bool votes = renderer->state == RENDERER_VOTES;
     renderer->refusal_sent = true;
     renderer->close_text = votes ? NULL : "this node was refused";
-    /* a core that is refused only because its version differs may still take the lead: the two cores of a pair are upgraded one
-       after the other */
+    /* The member takes_over says whether the refused core may still take the lead. A core that is refused only because its
+       version differs may, because the two cores of a pair are upgraded one after the other. */
     json_t *message = json_pack("{s:s,s:s,s:b,s:b}", "type", "refused", "why", renderer->refusal, "votes", votes, "takes_over",
                                 votes && !renderer->other_configuration);
     if (renderer->other_configuration)

@@ -52,7 +52,7 @@ static uint64_t new_number(const struct server_context *server)
     uint64_t number = 0;
     while (number == 0 || stream_called(server, number)) {
         if (RAND_bytes((unsigned char *)&number, sizeof(number)) != 1)
-            return 0; /* without random numbers, the session gets number 0, so it cannot be followed */
+            return 0; /* returns 0, with which the session cannot be followed, if the system supplies no random numbers */
         number >>= 16;
     }
     return number;
@@ -425,7 +425,7 @@ static void note_login(struct server_context *server, struct stream *stream, boo
         return;
     if (good)
         holder.role = session->identity.role;
-    /* pump() counts a login that throttling left unchecked (LOGIN_HELD, close code 1013) as refused, so it is not counted here */
+    /* does not count a login that throttling left unchecked (LOGIN_HELD, close code 1013): pump() counts it as refused */
     if (!good)
         counter_inc(server->counters.refused, session->identity.login != LOGIN_HELD);
     if (!good || session->identity.role > ROLE_OPEN || holder.name[0])

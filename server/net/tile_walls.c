@@ -62,7 +62,7 @@ static struct session *choose(struct server_context *server, const struct tile_w
 static void take_lead(const struct server_context *server, struct tile_wall *wall, struct session *leader, const struct stream *leaving)
 {
     const struct stream *before = wall->leader ? stream_find(server, wall->leader) : NULL;
-    /* the leaving stream is no longer in the table, so stream_find() does not find it: uses its pointer */
+    /* uses the pointer to the leaving stream, because the stream is no longer in the table in which stream_find() searches */
     if (leaving && leaving->session->id == wall->leader)
         before = leaving;
     if (before)

@@ -31,7 +31,7 @@ enum fill_mode { FILL_NONE, FILL_NEIGHBOURS };
 enum plant_show { PLANT_SHOW_VALUE, PLANT_SHOW_OPERATOR };
 /* initial display state of an asset: shown, ghosted (outline only) or hidden */
 enum plant_start { PLANT_START_SHOWN, PLANT_START_GHOST, PLANT_START_HIDDEN };
-enum { PLANT_STARTS = 4096 }; /* only this many assets, the first ones in the plant file, can be hidden or ghosted individually */
+enum { PLANT_STARTS = 4096 }; /* number of assets, from the first in the plant file on, that can be hidden or ghosted individually */
 enum axis { AXIS_Y, AXIS_Z }; /* upward axis */
 enum data_type {
     DATA_BIT,

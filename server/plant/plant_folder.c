@@ -284,7 +284,7 @@ int plant_folder_lock(const struct plant_folder_params *params, char **why)
             usleep(LOOK_MS * 1000);
         /* continues without a lock, because this file system (NFS, for example) has none */
         else if (errno == EBADF || errno == ENOLCK || errno == EOPNOTSUPP)
-            return fd; /* work folders are not removed without a lock: another program may be using them */
+            return fd; /* does not remove work folders without a lock, because another program may be using them */
         else if (errno != EINTR)
             status = -errno;
     if (status == 0) {

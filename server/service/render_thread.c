@@ -5,19 +5,20 @@
 #include "render/frame_record.h"
 #include "render/overlay/overlay.h"
 
-/* duration of one step of a long job (a frame drawn in steps); other requests are served after each step */
+/* time in nanoseconds for one step of a long job (a frame drawn in steps); other requests are served after each step */
 static const int64_t STEP_NS = 10 * NS_PER_MS;
-/* time that the render thread spends, with each frame that it draws, on baking the light that a session chose, while that
-   session's camera moves */
+/* time in nanoseconds for baking the light that a session chose, per frame that the render thread draws while that session's
+   camera moves */
 static const int64_t LIGHT_NS = 4 * NS_PER_MS;
-/* time that the render thread spends on a slow computation of a field with each frame that it draws meanwhile */
+/* time in nanoseconds for a slow computation of a field, per frame that the render thread draws meanwhile */
 static const int64_t FIELD_NS = 6 * NS_PER_MS;
 /* REBUILD_NS: delay between attempts to create a new GL context; it doubles up to REBUILD_MAX_NS */
 static const int64_t REBUILD_NS = 100 * NS_PER_MS, REBUILD_MAX_NS = 5 * NS_PER_S;
-/* if a view has had a refined frame, changed readings wait at most this long for the next one; then a preview shows them */
+/* Maximum time in nanoseconds that changed readings wait for the next refined frame of a view that has had one. Afterwards a
+   preview shows them. */
 static const int64_t MAX_READINGS_DELAY_NS = 4 * NS_PER_S;
-/* how long the render thread waits after a restart of the GPU's driver for a GPU of the same kind to appear; afterwards any
-   renderer will do */
+/* Time in nanoseconds after a restart of the GPU's driver during which the render thread accepts only a GPU of the same kind.
+   Afterwards any renderer will do. */
 static const int64_t DRIVER_RESTART_TIMEOUT_NS = 60 * NS_PER_S;
 
 /* Puts the ticket's request back into the queue. Returns true if there is no need: the client has gone, or has a newer request.

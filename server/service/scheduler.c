@@ -4,11 +4,13 @@
 
 #include "base/clock.h"
 
-/* how long after a frame for a moving camera the scheduler waits for that camera's next position before it draws anything else */
+/* time in nanoseconds after a frame for a moving camera during which the scheduler draws nothing else, because that camera's
+   next position is expected */
 static const int64_t INPUT_PAUSE_NS = 150 * NS_PER_MS;
-/* how long long-running frames (refined ones, snapshots over HTTP) are postponed at most while cameras move */
+/* maximum time in nanoseconds by which slow frames (refined ones, snapshots over HTTP) are postponed while cameras move */
 static const int64_t LONG_TURN_NS = 3 * NS_PER_S;
-/* how long snapshots over HTTP are postponed at most while cameras move; shorter, because their clients have no frame to look at yet */
+/* maximum time in nanoseconds by which snapshots over HTTP are postponed while cameras move; shorter, because their clients
+   have no frame to look at yet */
 static const int64_t SNAPSHOT_TURN_NS = 1 * NS_PER_S;
 
 int scheduler_share(enum urgency urgency)

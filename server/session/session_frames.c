@@ -7,31 +7,32 @@
 #include "session/reply/reply.h"
 #include "session/session_impl.h"
 
-/* a refined (detailed) frame is due once the camera has not moved for this long; until then, previews are sent */
+/* time in nanoseconds without camera movement after which a refined (detailed) frame is due; until then, previews are sent */
 static const int64_t STILL_NS = 200 * NS_PER_MS;
-/* like STILL_NS while the render thread is overloaded or the network is slow: a refined frame is due once no preview was
-   requested for this long */
+/* used instead of STILL_NS while the render thread is overloaded or the network is slow: time in nanoseconds without a request
+   for a preview after which a refined frame is due */
 static const int64_t LOADED_STILL_NS = 1000 * NS_PER_MS;
-/* while the render thread is overloaded or the network is slow: age of the last refined frame at which another one is requested
-   although previews continue */
+/* age in nanoseconds of the last refined frame at which another one is requested although previews continue; applies while the
+   render thread is overloaded or the network is slow */
 static const int64_t LOADED_SHARE_NS = 3 * NS_PER_S;
-/* how long a refined (detailed) frame is postponed at most while the cameras of other sessions move */
+/* maximum time in nanoseconds by which a refined (detailed) frame is postponed while the cameras of other sessions move */
 static const int64_t MAX_POSTPONE_NS = 10 * NS_PER_S;
-/* a refined frame whose expected transfer takes longer than this is sent twice: first as a draft of low quality, then in full quality */
+/* expected transfer time, in nanoseconds, above which a refined frame is sent twice: first as a draft of low quality, then in
+   full quality */
 static const int64_t SLOW_STILL_NS = 500 * NS_PER_MS;
-/* delay after a draft (refined frame in low quality) before the same frame is sent in full quality */
+/* delay in nanoseconds after a draft (refined frame in low quality) before the same frame is sent in full quality */
 static const int64_t FULL_QUALITY_DELAY_NS = 1000 * NS_PER_MS;
-/* how long the first frame waits at most for the first bandwidth measurement */
+/* maximum time in nanoseconds that the first frame waits for the first bandwidth measurement */
 static const int64_t MAX_START_WAIT_NS = 1000 * NS_PER_MS;
-/* when the view of a refined frame has changed while the frame is being sent, the rest is not sent if sending it would take
-   longer than this */
+/* nanoseconds. If the view changes while a refined frame is being sent, and sending the rest of the frame would take longer
+   than this, the rest is not sent. */
 static const int64_t GIVE_UP_NS = 100 * NS_PER_MS;
 static const int64_t RETRY_DELAY_NS = 2000 * NS_PER_MS; /* delay before repeating the request for a frame that failed for lack of memory */
 /* assumed ratio of the bytes of a refined (detailed) frame to those of a preview, until a refined frame was sent */
 static const double STILL_OVER_MOVING = 3;
 static const struct encoder_params STILL = { .quality = 92, .full_chroma = true }, DRAFT = { .quality = 42 };
 static const struct encoder_params LOSSLESS = { .quality = 100, .full_chroma = true };
-/* maximum time between two camera messages of one movement */
+/* maximum time in nanoseconds between two camera messages of one and the same movement */
 static const int64_t CAMERA_INTERVAL_NS = 120 * NS_PER_MS;
 /* a side of a picture that has at most this many pixels is not reduced further when the quality ladder
    (pacing/quality_ladder.h) reduces the picture */

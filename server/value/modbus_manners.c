@@ -12,18 +12,19 @@
    connection. REFUSED_CONNECTIONS, CLOSED_CONNECTIONS: maximum number of failed connections, when connecting and when reading, that
    are blamed on reconnecting too early. */
 enum { LISTEN_TIMEOUTS = 4, SHORT_CONNECTIONS = 3, REFUSED_CONNECTIONS = 6, CLOSED_CONNECTIONS = 2 };
-/* first delay before reconnecting to a device that refuses connections. It doubles each time, because some devices take a while to
-   release a closed connection */
+/* First delay in nanoseconds before reconnecting to a device that refuses connections, because some devices take a while to
+   release a closed connection. It doubles with each further failure. */
 static const int64_t RECONNECT_DELAY_NS = 50 * NS_PER_MS;
-/* a failed connection is blamed on reconnecting too early only if the device's last answer is at most this old */
+/* time in nanoseconds after a device's last answer during which a failed connection is attributed to reconnecting too early */
 static const int64_t TOLERANCE_NS = 2 * NS_PER_S;
-/* time limit for the first answer on a connection, if the previous connection got no answer at all. It is doubled after more
-   such connections */
+/* time limit in nanoseconds for the first answer on a connection, if the previous connection got no answer at all; twice
+   this time after two or more such connections */
 static const int64_t FIRST_ANSWER_TIMEOUT_NS = 3 * NS_PER_S;
-/* first delay to try between connecting and the first request. For RTU over TCP, whose frames have no transaction numbers, so
-   that requests must not be repeated */
+/* First delay in nanoseconds, between connecting and the first request, that the source tries for RTU over TCP. It waits
+   instead of repeating the request, because these frames have no transaction numbers that tell answers apart. */
 static const int64_t RTU_DELAY_NS = 500 * NS_PER_MS;
-/* time limit for the answer of a unit (slave address) that is up, if another unit behind the same gateway has just timed out */
+/* time limit in nanoseconds for the answer of a unit (slave address) that is up, if another unit behind the same gateway has
+   just timed out */
 static const int64_t GATEWAY_TIMEOUT_NS = 5 * NS_PER_S;
 static const int64_t MAX_CONNECT_DELAY_NS = 8 * NS_PER_S;
 

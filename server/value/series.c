@@ -226,7 +226,7 @@ static bool read_wide(struct series *series, struct series_lines *lines, size_t 
             snprintf(why, 200, "%s:%d: expected a time not before that of the line above", lines->path, lines->number);
             return false;
         }
-        if (lines->cells[column].length == 0) /* the cell is empty: the series has no value at this time */
+        if (lines->cells[column].length == 0) /* no value at this time, because the cell is empty */
             continue;
         if (!value_of(&lines->cells[column], &value)) {
             snprintf(why, 200, "%s:%d: %s: expected a number", lines->path, lines->number, series->name);
@@ -260,8 +260,9 @@ static bool read_long(struct series *series, struct series_lines *lines, struct 
 }
 
 struct header {              /* indices of columns in a CSV file; the index of a missing column is the number of columns */
-    size_t time, column;     /* wide form (series.h): the time column, and the column of the series */
-    size_t tag, value, unit, quality; /* columns of the values form (series.h), which has one value in each line */
+    /* for the wide form (series.h), which has a column per series: indices of the time column and of the series' column */
+    size_t time, column;
+    size_t tag, value, unit, quality; /* for the values form (series.h), which has one value in each line: indices of its columns */
     bool of_values;
 };
 

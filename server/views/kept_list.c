@@ -169,7 +169,7 @@ bool kept_list_mirror(struct kept_list *kept, json_t *list)
         return false;
     if (json_equal(kept_list_newest(kept), list))
         return true;
-    if (kept->path && !kept->unreadable) /* a standby core also writes the list to disk, because it may become the leader */
+    if (kept->path && !kept->unreadable) /* also writes the list to disk on a standby core, because that core may become the leader */
         put(kept, json_incref(list), true);
     else
         put_in_force(kept, list);

@@ -91,7 +91,7 @@ enum refusal_code named_views_save(struct named_views *views, const struct named
     json_t *old = json_array_get(newest, at), *list, *view;
     if (why || (!old && count >= NAMED_VIEWS))
         return why ? why : REFUSAL_VIEWS;
-    if (old && same(old, edit)) /* only the position of the view in the list changes, so no earlier version is stored */
+    if (old && same(old, edit)) /* stores no earlier version if only the position of the view in the list changes */
         view = json_incref(old);
     else
         view = json_pack("{s:s,s:s,s:s,s:s,s:I,s:o}", "id", edit->id, "title", edit->title, "view", edit->address, "by", who, "time_us",

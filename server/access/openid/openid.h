@@ -13,7 +13,7 @@
 struct openid_params {
     struct log *log;
     struct counters *counters;
-    struct audit *audit;     /* where log-ins and refusals are recorded; NULL: nothing is recorded */
+    struct audit *audit;     /* audit trail in which log-ins and refusals are recorded; NULL: nothing is recorded */
     const char *path;        /* path of the configuration file */
     int64_t lock_ns;         /* nanoseconds of inactivity after which a user is signed out; 0: never */
     /* called on any thread when openid_collect() has the result of a log-in, or a signed-in user's rights changed */

@@ -14,7 +14,9 @@ struct file_job {
     /* Ends the job on the event loop: if `error` is 0, puts the saved change into effect, else discards it; then frees the job.
        If `owner` is NULL (file_writer_forget()), only frees the job. */
     void (*finish)(struct file_job *job, int error);
-    const void *owner; /* jobs of one owner build on each other: if one fails, that owner's later jobs in the queue fail, too */
+    /* identifies the object whose changes the job saves. Such changes build on each other: if one job fails, later jobs of the
+       same owner fail, too */
+    const void *owner;
     uint64_t number;
     int error;
     struct file_job *next;

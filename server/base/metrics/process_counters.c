@@ -28,7 +28,7 @@ static bool read_stat(unsigned long long fields[STAT_LAST + 1])
     for (int i = 3; i <= STAT_LAST && at; i++, at = strchr(at, ' ')) {
         at++;
         if (i > 3 && sscanf(at, "%llu", &fields[i]) != 1)
-            fields[i] = 0; /* a negative field, such as a priority, is not parsed and reads as 0 */
+            fields[i] = 0; /* stores 0 if the field is no unsigned number: a negative one, such as a priority */
     }
     return at != NULL;
 }

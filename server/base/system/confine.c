@@ -149,7 +149,9 @@ static int restrict_paths(const struct confine_params *params, int abi)
     int status = ruleset < 0 ? -errno : permit(ruleset, "/dev/null", (READ_FILE | WRITE_FILE | TRUNCATE) & known);
     for (size_t i = 0; i < sizeof(system_paths) / sizeof(system_paths[0]) && status == 0; i++)
         status = permit(ruleset, system_paths[i].path, rights_of(system_paths[i].access, params->role) & known);
-    if (status == 0) /* a command may read all of /proc, because the names of its child processes there are unknown in advance */
+    /* lets a command read all of /proc, because the names of its child processes there are unknown in advance; a program that
+       reads models may read only its own entry */
+    if (status == 0)
         status = permit(ruleset, params->role == CONFINE_READER ? "/proc/self" : "/proc", READ_FILE | READ_FOLDER);
     if (status == 0)
         status = permit_suppressions(ruleset);
@@ -204,7 +206,7 @@ int confine(const struct confine_params *params)
     if (status != 0)
         return status;
     status = confine_calls(params->role, params->notifies);
-    /* missing seccomp filters are no error here: confine_lacks() reports them */
+    /* returns 0 if the kernel has no seccomp filters: confine_lacks() reports that */
     return status == -ENOSYS || status == -EINVAL ? 0 : status;
 }
 

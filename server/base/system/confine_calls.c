@@ -146,7 +146,7 @@ static void decide_by_arguments(struct filter_program *program, enum confine_rol
     static const struct values namespaces = { { (uint32_t)NAMESPACES }, 1 };
     const struct values own = { { (uint32_t)getpid() }, 1 }, self = { { 0, (uint32_t)getpid() }, 2 };
     decide(program, SYS_fcntl, 1, BPF_JEQ, &owners, false);
-    /* a process may change its own limits (pid 0 or its own pid), but not the daemon's */
+    /* lets a process change its own limits (pid 0 or its own pid), but not the daemon's */
     decide(program, SYS_prlimit64, 0, BPF_JEQ, role == CONFINE_READER ? &self : &itself, true);
     if (role == CONFINE_READER) {
         decide(program, SYS_kill, 0, BPF_JEQ, &own, true);

@@ -315,7 +315,7 @@ static double score_wide(const struct wide_model *model, const unsigned char *at
 {
     enum { DAMAGED = -18 };
     const unsigned char *to = at + count;
-    unsigned before = 0; /* the ASCII byte before the high bytes; 0: none */
+    unsigned before = 0; /* value of the ASCII byte just before the current high bytes (0x80 and above); 0: there is none */
     struct frequent *set = mem_new(sizeof(*set));
     double score = model->prior;
     struct charset_encoder *encoder = charset_encoder_open(model->name);
@@ -493,7 +493,8 @@ struct charset_choice charset_find(const char *bytes, size_t count)
         choice.ascii = characters == 0 && invalid == 0;
         if (choice.ascii && has_escape(bytes, count))
             name = "ISO-2022-JP";
-        else if (invalid * 4 > characters) /* a text that is mostly valid UTF-8 counts as UTF-8: it may be damaged or truncated */
+        /* treats a text with few invalid bytes as UTF-8, because it may be a damaged or truncated UTF-8 text */
+        else if (invalid * 4 > characters)
             return find_legacy(bytes, count);
     }
     if (name) {

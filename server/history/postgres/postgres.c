@@ -370,7 +370,7 @@ static void send_all(struct postgres *postgres)
     postgres->flushed = true;
     if (postgres->alone) {
         pthread_mutex_lock(&postgres->lock);
-        /* sent_ns is set to the time one round ago, because the historian may have added points to one outbox while this round
+        /* sets sent_ns to the time one round ago, because the historian may have added points to one outbox while this round
            was sending another */
         postgres->sent_ns = now_ns - ROUND_MS * NS_PER_MS;
         pthread_mutex_unlock(&postgres->lock);

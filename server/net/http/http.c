@@ -60,7 +60,8 @@ static int ready(struct server_context *server, struct http_exchange *request)
 
 #define NGINX_LINES "proxy_http_version 1.1; proxy_set_header Upgrade $http_upgrade; proxy_set_header Connection \"upgrade\";"
 
-/* how long the server remembers why it refused to open a stream, so that the page can ask for the reason */
+/* time in nanoseconds for which the server remembers why it refused to open a stream, so that the page can ask for the reason
+   with another request */
 static const int64_t REFUSED_NS = 15 * NS_PER_S;
 
 /* Logs a request to the stream's path that lacks the header Upgrade, the sign of a misconfigured proxy. Proxies drop Upgrade
@@ -97,7 +98,7 @@ static int stream_without_upgrade(struct server_context *server, struct http_exc
                                "removed it. nginx needs: " NGINX_LINES "\n";
     int64_t now_ns = clock_mono_ns();
     const char *refused = last_refusal(server, connection_of(request->wsi)->address, now_ns);
-    /* no log line for a request with ?why: the page itself sends it after a failed handshake, to learn the reason */
+    /* does not log a request with ?why: the page itself sends it after a failed handshake, to learn the reason */
     if (lws_hdr_total_length(request->wsi, WSI_TOKEN_HTTP_URI_ARGS) == 0)
         log_without_upgrade(server, request->wsi, now_ns);
     char *body = refused ? mem_printf("%srefused: %s", text, refused) : mem_strdup(text);
@@ -233,7 +234,7 @@ static int serve_route(struct server_context *server, struct http_exchange *requ
 static int serve_post(struct server_context *server, struct http_exchange *request, const char *path)
 {
     enum role role = connection_of(request->wsi)->role;
-    request->close = true; /* close the connection after the answer, because the client may send a body that nobody will read */
+    request->close = true; /* closes the connection after the answer, because the client may send a body that nobody will read */
     if (role < ROLE_ENGINEER) {
         connection_record(server, request->wsi, "access", "refused", path, "the request needs the role engineer");
         return refuse_others(request, role);
@@ -249,7 +250,7 @@ static int serve_post(struct server_context *server, struct http_exchange *reque
 static int refuse_method(const struct server_context *server, struct http_exchange *request, bool posts)
 {
     struct text text = { 0 };
-    request->close = true; /* close the connection after the answer, because the client may send a body that nobody will read */
+    request->close = true; /* closes the connection after the answer, because the client may send a body that nobody will read */
     if (posts) {
         text_add(&text, "only POST is allowed\n");
     } else {
@@ -361,16 +362,18 @@ int http_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user,
     case LWS_CALLBACK_HTTP_BODY: return *slot ? import_take_body(server_context_of(wsi), *slot, in, len) : 0;
     case LWS_CALLBACK_HTTP_BODY_COMPLETION: return *slot ? import_end_body(server_context_of(wsi), *slot) : 0;
     case LWS_CALLBACK_HTTP_WRITEABLE: return *slot ? on_writeable(server_context_of(wsi), *slot) : 0;
-    /* also called when a connection is upgraded to a WebSocket; only other connections are handled here */
+    /* libwebsockets also sends this event when a connection is upgraded to a WebSocket; request_end() handles all other
+       connections */
     case LWS_CALLBACK_HTTP_DROP_PROTOCOL:
     case LWS_CALLBACK_CLOSED_HTTP: request_end(server_context_of(wsi), slot); return 0;
     case LWS_CALLBACK_TIMER: return stuck_head_look(server_context_of(wsi), wsi);
     case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE:
         stuck_head_arrived(wsi);
-        /* a stream gets a close frame of its own when the server shuts down, so its connection does not count as unanswered */
+        /* counts the connection as having no open request: a stream gets a close frame of its own when the server shuts down */
         connection_set_answered(server_context_of(wsi), wsi, true);
         return strcasecmp(in, "websocket") == 0 ? stream_check_upgrade(server_context_of(wsi), wsi) : -1;
-    case LWS_CALLBACK_ESTABLISHED: { /* only a WebSocket without subprotocol gets here; others go to the handlers of their subprotocols */
+    /* refuses a WebSocket without subprotocol; all other WebSockets go to the handlers of their subprotocols */
+    case LWS_CALLBACK_ESTABLISHED: {
         static unsigned char text[] = "the subprotocol is " WIRE_SUBPROTOCOL;
         lws_close_reason(wsi, LWS_CLOSE_STATUS_PROTOCOL_ERR, text, sizeof(text) - 1);
         return -1;

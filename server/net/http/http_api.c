@@ -146,7 +146,8 @@ void http_on_history_answer(struct server_context *server, struct history_answer
         return;
     }
     request_forget(server, request);
-    /* an answer in pieces that has begun cannot be replaced by an error; closing the connection shows that it is incomplete */
+    /* History could not be read. If the first piece of the answer was sent already, no error can replace it, so the connection
+       is closed, which shows the client that the answer is incomplete. */
     if (!answer->text)
         request_answered(request, answer->first ? request_answer_unreadable(server, request) : -1);
     else

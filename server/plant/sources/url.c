@@ -44,7 +44,7 @@ void url_check(struct yaml_reader *reader, const struct yaml_map *map, const cha
 {
     const char *wrong = yaml_map_good(map, key) && url ? wrong_with(url, plain, secure) : NULL;
     if (wrong)
-        /* the message does not repeat the URL, because the URL may contain a password */
+        /* does not repeat the URL in the message, because the URL may contain a password */
         yaml_error(reader, yaml_map_place(map, key), "%s: %s (expected %s... or %s...)", key, wrong, secure, plain);
 }
 

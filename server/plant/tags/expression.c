@@ -347,7 +347,7 @@ double expression_value(const struct expression *expression, const double *value
             top--;
             stack[top - 1] = join(step->operation, stack[top - 1], stack[top]);
         }
-        /* an undefined intermediate result makes the whole expression undefined: min(), or a division by infinity, would
+        /* returns an undefined result as soon as an intermediate result is undefined: min(), or a division by infinity, would
            otherwise hide it */
         if (!isfinite(stack[top - 1]))
             return NAN;

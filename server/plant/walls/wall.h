@@ -54,7 +54,7 @@ struct wall_pane {
     char *items[PANE_ITEMS];
     size_t item_count;
     int item_lines[PANE_ITEMS], item_columns[PANE_ITEMS];
-    double every_s; /* how long the pane shows each of its views, in seconds */
+    double every_s; /* seconds for which the pane shows one of its views before it shows the next */
     double hours;   /* hours that a trend covers */
     /* true: when an alarm is raised, the pane shows the view that belongs to the alarm; only for panes that show views or a
        tour */

@@ -66,8 +66,8 @@ static void find_part(const struct frame_context *context, double low[2], double
                 place[c] = corner >> c & 1 ? asset->bounds_max_m[c] : asset->bounds_min_m[c];
             matrix_point(context->constants.clip_from_plant, place, clip);
             for (int c = 0; c < 2; c++) {
-                /* if a corner of the box is behind the eye, the projection of the box is unbounded there, so the rectangle
-                   extends to the picture's border */
+                /* extends the rectangle to the picture's border if a corner of the box is behind the eye, because the
+                   projection of the box is unbounded there */
                 low[c] = clip[3] > 0 ? fmin(low[c], clip[c] / clip[3]) : -1;
                 high[c] = clip[3] > 0 ? fmax(high[c], clip[c] / clip[3]) : 1;
             }

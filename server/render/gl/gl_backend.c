@@ -124,7 +124,7 @@ static bool begin(struct renderer *renderer, struct render_job *job, const struc
     job->of.gl = mem_new(sizeof(*job->of.gl));
     job->of.gl->target = target;
     job->context.target = &job->of.gl->target;
-    /* on a GPU, one tile covers the whole frame: the GPU draws it in the time that a processor needs for one small tile */
+    /* draws the whole frame as one tile if a GPU draws it: that takes no longer than one small tile on a processor */
     frame_tiles_init(&job->of.gl->tiles, &job->context, at_once || !renderer->gl->software);
     renderer_upload_fields(renderer, plan, &job->context, job->frame);
     return true;
@@ -161,7 +161,7 @@ static double draw_surfaces(struct renderer *renderer, struct render_job *job, c
     own->drawn = surface_pass_draw_some(pass, &context, first, triangles);
     *done = own->drawn == context.visible_count;
     if (*done) {
-        /* the sky is drawn before blended surfaces, because it is visible through them */
+        /* draws the sky before blended surfaces, because it is visible through them */
         sky_draw(&renderer->sky, &context, &renderer->light);
         surface_pass_draw_blended(pass, &context);
         target_resolve(&own->target, tile->x_px, tile->y_px, tile->width_px, tile->height_px);

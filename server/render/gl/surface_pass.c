@@ -96,7 +96,8 @@ static int choose_variant(const struct frame_context *context, const struct mode
     int variant = field ? SURFACE_FIELD : 0;
     if (field && (context->colormap.lines || view->color_scale.log))
         variant |= SURFACE_RICH;
-    /* in the operator's display, assets without a field are grey (RICH without FIELD): no material colour may resemble an alarm colour */
+    /* draws assets without a field in grey (RICH without FIELD) in the operator's display, because no material colour may
+       resemble an alarm colour */
     if (!field && view_is_operator(view))
         variant |= SURFACE_RICH;
     if (field && view->look == LOOK_GLOSSY)

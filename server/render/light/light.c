@@ -19,7 +19,7 @@ static void find_ground(struct light *light)
     for (int i = 0; i < 2; i++)
         side_m = fmax(side_m, scene->bounds_max_m[across[i]] - scene->bounds_min_m[across[i]]);
     side_m += 1.2 * gpu_scene->radius_m;
-    /* the ground is drawn slightly below the plant's lowest point, so that no surface of the plant coincides with it */
+    /* places the ground slightly below the plant's lowest point, so that no surface of the plant coincides with it */
     light->ground_height_m = scene->bounds_min_m[up] - 0.001 * gpu_scene->radius_m;
     memset(light->plant_from_ground, 0, sizeof(light->plant_from_ground));
     for (int i = 0; i < 2; i++) {

@@ -79,7 +79,7 @@ static void draw_ground(const struct sky *sky, const struct frame_context *conte
     glUniformMatrix4fv(1, 1, GL_FALSE, matrix);
     glBindTextureUnit(1, context->light->ground);
     glBindTextureUnit(2, context->light->sun_map);
-    /* depth is clamped instead of clipped: the ground may lie beyond the far plane, which encloses the plant only */
+    /* clamps depth instead of clipping: the ground may lie beyond the far plane, which encloses the plant only */
     glEnable(GL_DEPTH_CLAMP);
     glEnable(GL_BLEND);
     glBlendFunc(GL_ZERO, GL_SRC_COLOR);

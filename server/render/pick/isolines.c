@@ -269,8 +269,8 @@ static void collect_arrows(struct isolines *isolines, const struct frame_context
     const struct scene *scene = context->gpu_scene->scene;
     const size_t most = out->count + 2 * MAX_POINTS;
     size_t longest = 0;
-    /* a view with trial sensor positions shows no arrows: assets not affected by the trial would still show directions from
-       before the trial */
+    /* skips arrows in a view with trial sensor positions (which a user tries out): assets not affected by the trial would still
+       show directions from before the trial */
     if (!isolines_has_arrows(scene, context->view))
         return;
     for (size_t i = 0; i < context->visible_count; i++) {

@@ -115,7 +115,8 @@ static double distance_m(const struct marker_iterator *iterator, const struct ma
         return NAN;
     if (place->tag == params->sensor)
         return 0;
-    /* distance unknown: the view uses heat distances, but markers can only show the geodesic distances of the asset file, which differ */
+    /* returns "unknown" if the view uses heat distances: the asset file has only the geodesic distances along triangles, which
+       differ */
     if (params->distance == DISTANCE_HEAT)
         return NAN;
     if (params->distance == DISTANCE_EUCLIDEAN) {

@@ -5,19 +5,20 @@
 #include "base/clock.h"
 
 static const int64_t RTT_WINDOW_NS =
-    /* length of a window for which the minimum round-trip time is kept; a round trip counts in the window in which it was
-       measured and in the next one */
+    /* length in nanoseconds of a window of time whose smallest round-trip time is kept; the estimate is the smaller one of the
+       present and the previous window */
     15 * NS_PER_S;
-/* longest round trip that is taken to be the network's delay; a longer one is caused by a queue somewhere, and counts as this
-   time */
+/* longest round trip, in nanoseconds, that is attributed to the network alone; a longer one includes waiting in a queue, and is
+   replaced by this time */
 static const int64_t MAX_RTT_NS = 1 * NS_PER_S;
-/* shortest transfer time that a measurement counts; a shorter one only shows that bandwidth is plentiful, and counts as this
-   time */
+/* shortest transfer time, in nanoseconds, that is used to compute the bandwidth; a shorter measurement is replaced by this
+   time, because it is too inexact */
 static const int64_t MIN_TRANSFER_NS = NS_PER_MS / 4;
-/* a frame counts as having waited for the decoder if its decoding started within this time after the acknowledgement of the frame before */
+/* nanoseconds. A frame waited for the client's decoder if its decoding started at most this long after the acknowledgement of
+   the frame before. */
 static const int64_t WAITED_NS = 1 * NS_PER_MS;
-/* frames of fewer bytes than this may only raise the estimate of the bandwidth, because the measurement is too rough to lower
-   it */
+/* size in bytes. A smaller frame may only raise the estimate of the bandwidth, because its measurement is too inexact to lower
+   it. */
 static const size_t SMALL_BYTES = 4096;
 static const double SAMPLE_WEIGHT = 0.25; /* weight of a new measurement in smoothed values, 0..1 */
 
@@ -102,7 +103,7 @@ void channel_on_ack(struct channel *channel, const struct channel_ack *ack)
 void channel_on_bytes(struct channel *channel, size_t bytes, int64_t took_ns)
 {
     int64_t transfer_ns = more(took_ns - channel_rtt_ns(channel), MIN_TRANSFER_NS);
-    /* a rough initial value of the bandwidth is enough: the frames that follow measure it better */
+    /* takes a rough initial value of the bandwidth; the frames that follow measure it better */
     channel->ns_per_byte = (double)transfer_ns / (double)(bytes + 1);
 }
 

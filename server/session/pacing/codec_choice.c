@@ -16,8 +16,8 @@ static const double PLENTY = 4, SCARCE = 2;
 /* Limits on the idle part of the processors, 0..1. Below BUSY_IDLE_SHARE, the codec changes to JPEG, which takes less processor
    time; above FREE_IDLE_SHARE, it changes back to H.264. */
 static const double BUSY_IDLE_SHARE = 0.15, FREE_IDLE_SHARE = 0.4;
-/* how long bandwidth and processor load (codec_facts) must favour the other codec before a switch; long, since a switch costs a
-   key frame */
+/* time in nanoseconds for which bandwidth and processor load (codec_facts) must favour the other codec before the server
+   switches to it; long, because a switch costs a key frame */
 static const int64_t TO_JPEG_NS = 5 * NS_PER_S, TO_H264_NS = 30 * NS_PER_S;
 
 static bool speaks_for_other(const struct codec_choice *choice, const struct codec_facts *facts)

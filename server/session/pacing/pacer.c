@@ -7,9 +7,11 @@
 
 #include "base/clock.h"
 
-/* the bytes in flight to a client must be able to arrive within this time plus one round trip */
+/* limit on the bytes in flight to a client, as a time in nanoseconds: they must be able to arrive within this time plus one
+   round trip */
 static const int64_t AHEAD_NS = 33 * NS_PER_MS;
-/* time without acknowledgement and progress after which a client is stalled (STALL_NS) or disconnected (DEAD_NS); see PROTOCOL.md */
+/* Nanoseconds in which a client acknowledges no frame and its socket accepts no bytes. After STALL_NS it is stalled and gets no
+   more frames; after DEAD_NS it is disconnected. See PROTOCOL.md. */
 static const int64_t STALL_NS = PACER_STALL_S * NS_PER_S, DEAD_NS = 15 * NS_PER_S;
 
 void pacer_init(struct pacer *pacer)

@@ -4,24 +4,24 @@
 
 #include "base/clock.h"
 
-/* the ladder steps down if a frame's transfer takes longer than this */
+/* transfer time of a frame, in nanoseconds, above which the ladder takes a step down (to lower quality or smaller pictures) */
 static const int64_t SLOW_NS = 80 * NS_PER_MS;
-/* the ladder steps up to a better step if its frames are expected to transfer faster than this */
+/* expected transfer time of a frame at a better step, in nanoseconds, below which the ladder steps up to it */
 static const int64_t FAST_NS = 40 * NS_PER_MS;
 static const int64_t MIN_UP_DELAY_NS = 1 * NS_PER_S, MAX_UP_DELAY_NS = 30 * NS_PER_S;
 static const int64_t LASTED_NS = 5 * NS_PER_S; /* time without a step down after which the last step up counts as successful */
-/* minimum time between two steps down, because the measured lag falls only some frames after a step */
+/* minimum time in nanoseconds between two steps down, because a step reduces the measured lag only some frames later */
 static const int64_t SETTLE_NS = 500 * NS_PER_MS;
-/* decoding time of a frame above which the client cannot keep up with 25 frames a second */
+/* decoding time of a frame, in nanoseconds, above which the client cannot keep up with 25 frames a second */
 static const int64_t SLOW_DECODE_NS = 40 * NS_PER_MS;
 static const int64_t FAST_DECODE_NS = 20 * NS_PER_MS;
-/* if making a picture takes longer than this, the ladder steps down. The server makes two pictures at a time, so this is the
-   limit for 15 pictures a second */
+/* Time in nanoseconds for making a picture above which the ladder steps down. The server makes two pictures at a time, so this
+   is the limit for 15 pictures a second. */
 static const int64_t SLOW_MADE_NS = 130 * NS_PER_MS;
 static const int64_t FAST_MADE_NS = 90 * NS_PER_MS;
 static const int64_t HARD_FOR_NS = 500 * NS_PER_MS, EASY_FOR_NS = 3 * NS_PER_S;
 static const double SAMPLE_WEIGHT = 0.25;
-/* limit on the bytes of a frame's copies for all viewers of a view, because the event loop needs some tens of milliseconds to
+/* limit on the total bytes of one frame's copies for all viewers of a view; the event loop needs some tens of milliseconds to
    send this many */
 static const double CROWD_BYTES = 30e6;
 /* MIN_VIEWERS: minimum number of viewers of a view that get a common step; MAX_STEPS_WORSE: a viewer whose own step is worse
@@ -170,7 +170,7 @@ void quality_ladder_on_made(struct quality_ladder *ladder, int64_t made_ns, int6
 void quality_ladder_on_ack(struct quality_ladder *ladder, const struct channel *channel, int step, size_t bytes, int64_t now_ns)
 {
     double unit = (double)bytes / steps[step].bytes;
-    /* the first frame's real size replaces the guess made from its number of pixels */
+    /* replaces the guess, which was made from the number of pixels, by the first frame's real size */
     ladder->unit_bytes = ladder->known ? ladder->unit_bytes + SAMPLE_WEIGHT * (unit - ladder->unit_bytes) : unit;
     if (channel->ns_per_byte > 0) {
         follow_network(ladder, channel, now_ns);

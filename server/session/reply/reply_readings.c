@@ -70,7 +70,7 @@ char *reply_status_text(const struct session_context *context, int64_t now_utc_n
             json_object_set_new(link, "simulated", json_true());
         json_array_append_new(links, link);
     }
-    if (context->hand_on) /* a renderer (daemon that draws for a core) lists one more source than the plant has: the link to its core */
+    if (context->hand_on) /* adds one more source to the list on a renderer (daemon that draws for a core): the link to its core */
         json_array_append_new(links, json_pack("{s:s,s:b}", "source", "core", "up", context->core_up));
     json_t *status = json_pack("{s:s,s:o,s:I,s:b,s:b}", "type", "status", "links", links, "time_us", us(now_utc_ns), "live", context->live,
                                "clock_set", context->clock.set);

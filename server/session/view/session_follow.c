@@ -58,7 +58,8 @@ void session_follow(struct session *session, struct session *leader, int64_t now
 
 void session_ask_lead(struct session *session, const struct message *message)
 {
-    if (!session_is_tile(session)) /* ignored for tiles: the positions of a wall's displays decide which tile leads */
+    /* ignores a tile (display with a part of a wall's picture): the positions of a wall's displays decide which tile leads */
+    if (!session_is_tile(session))
         session->following.heir_wanted = message->follow;
 }
 

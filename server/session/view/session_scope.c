@@ -58,7 +58,7 @@ static bool read_view(const struct session *session, const char *id, struct view
     view->camera_seq = before.camera_seq;
     view->params_seq = before.params_seq;
     view->tier = before.tier;
-    view_set_instant(view, before.at_us, before.field.slot); /* the session stays at the past instant that it shows */
+    view_set_instant(view, before.at_us, before.field.slot); /* keeps the past instant that the session shows */
     view_set_trial(view, before.field.trial);
     return true;
 }
@@ -249,7 +249,7 @@ bool session_scope_allows(const struct session *session, const struct message *m
                      "key_frame and ping",
                      holder->views);
     else if (holder->display && !is_in(message->type, displays, sizeof(displays) / sizeof(displays[0])) &&
-             /* a display that shows pictures (not only trends of tags) may send picks: its page uses them to find a free side
+             /* lets a display that shows pictures (not only trends of tags) send picks: its page uses them to find a free side
                 for an alarm's label */
              (message->type != MESSAGE_PICK || session->scope.tags))
         message_fail(error, "not_allowed",

@@ -179,7 +179,8 @@ SIMD_BODY bool next_point(const struct propagation *propagation, struct front_tu
         while (*bucket != TRIMESH_NONE) {
             struct propagation_item item = front->items[*bucket];
             *bucket = item.next;
-            /* a point is in the queue once for each time its distance was lowered; only its entry with the shortest distance counts */
+            /* skips outdated entries: a point has one entry in the queue for each time its distance was lowered, and only the
+               entry with the shortest distance counts */
             if (front->settled[item.point])
                 continue;
             front->settled[item.point] = 1;

@@ -146,7 +146,7 @@ static uint32_t follow_line(const struct face_triangulation *face, uint32_t u, u
                 left = b;
             }
         }
-    /* the number of steps is limited, because rounding errors in flat triangles might lead to an endless loop */
+    /* limits the number of steps, because rounding errors in flat triangles might lead to an endless loop */
     while (right != left && crossed->count < face->tri_count) {
         add_crossed(crossed, right, left);
         if (find_side(face, left, right, &apex) == face->tri_count)

@@ -16,7 +16,7 @@ enum mqtt_found {
     MQTT_WRONG,  /* the value in the payload is not a number: the tag becomes Bad */
 };
 
-struct mqtt_reader { /* where a JSON payload has one tag's value, its time and its quality */
+struct mqtt_reader { /* paths in a JSON payload at which one tag's value, its time and its quality are */
     const struct plant_mqtt *mqtt;
     const char *path; /* JSON path of the value; "": the value is the whole payload, or its member `value` */
     const char *tag;
