@@ -787,7 +787,8 @@ struct core_link *core_link_start(const struct core_link_params *params)
                                         "Seconds by which the core's clock is ahead of this machine's.");
     /* lets libwebsockets log only errors and warnings; the link's own loop logs its connections */
     lws_set_log_level(LLL_ERR | LLL_WARN, NULL);
-    /* this node has just loaded its plant, so an earlier refusal by the leader no longer keeps it from taking the lead */
+    /* the leader may have refused this node because of its old plant; with the plant just loaded, that refusal no longer keeps
+       this node from taking the lead */
     if (params->keeper)
         lease_keeper_set_refused(params->keeper, NULL);
     thread_init(&link->thread);

@@ -44,8 +44,8 @@ struct lease_keeper {
     bool refuses_changes;
     bool told_won, told_lost, told_alone, told_barred;
     char said[POSTGRES_WHY_BYTES], led_by[LEASE_NODE_BYTES];
-    /* version (`beat`) of the lease's database row when it first named another core with this core's name; -1: that core is
-       alive, which is logged already; 0: no such core was seen */
+    /* `beat` (version number) that the lease's database row had when the row first named another core with this core's name;
+       -1: the row has changed since, so that other core is alive (already logged); 0: no such core was seen */
     int64_t namesake_beat;
     struct thread thread;
     /* --- below: under thread.lock */

@@ -22,7 +22,8 @@ static const double MEAN_PART = 0.25; /* noise of an hourly mean, relative to th
 /* A jump at a row shows as the difference between two averages of residuals, one before and one after the row. First constant:
    number of hours in each average. Second constant: number of hours between the two averages, which neither includes. */
 enum { BESIDE = 3, WITHIN = 2 };
-/* smallest jump of the residuals to be found, as a multiple of the usual difference between two such averages */
+/* a jump of the residuals is found only if the difference between the two averages is at least this multiple of the difference
+   that is usual between such averages */
 static const double MIN_JUMP_FACTOR = 6;
 static const double LAG_HOURS = 12;          /* time constant of the low-pass filter that models the time that heat takes from the
                                                 other sensors to this one */

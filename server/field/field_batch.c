@@ -16,8 +16,8 @@ static void update_some(void *arg, size_t begin, size_t end)
         update_run(together->states[i]);
 }
 
-/* Updates several assets in parallel, but only those with complete weights: an update would otherwise fill in weights that are
-   shared by the instances of an asset. */
+/* Updates the fields of several assets in parallel, but only those whose weights are completely computed: other updates would
+   compute weights that instances of one asset share, so that two threads might write the same weights */
 void field_update_all(struct field *field, const int *assets, const size_t *counts, size_t asset_count, const struct field_params *params,
                       const struct snapshot *snapshot)
 {

@@ -12,9 +12,10 @@ struct scalar {
     /* distance beyond the border between data and no data, encoded by weights_lacking_at(). Above 127: no data. A distance
        rather than a flag makes the border exact when interpolated between vertices */
     uint8_t lacking;
-    /* uncertainty of the value: proportional to the fraction of its weights that Uncertain sensors have. Above 127, so that a
-       border interpolated between vertices is exact: they have at least half of the weights, or the value was filled in from
-       neighbours. 255 also marks triangles whose interpolation deviates from the field (struct scalars: drawn_error) */
+    /* uncertainty of the value: proportional to the share of Uncertain sensors in the sum of its weights. Above 127: these
+       sensors have at least half of the weights, or the value was filled in from neighbours; the value is a number rather than
+       a flag, so that a border interpolated between vertices is exact. 255 also marks triangles whose interpolation deviates
+       from the field (struct scalars: drawn_error) */
     uint8_t uncertain;
     /* 255: only in the operator's view: the nearest sensor is good but its tag has no alarm limits, so there is data but no
        position between limits */

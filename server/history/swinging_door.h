@@ -35,8 +35,8 @@ int swinging_door_put(struct swinging_door *door, const struct swinging_door_par
 /* Records the newest sample now, as if override_us had passed since the last recorded point. Returns the number of points in `kept`. */
 int swinging_door_end(struct swinging_door *door, const struct swinging_door_params *params,
                       struct history_point kept[SWINGING_DOOR_MAX_POINTS]);
-/* If the newest sample is not recorded yet, writes it to *out and returns true. Readers of history draw the line on to that
-   sample, and the caller stores it so that it survives a crash. */
+/* If the newest sample is not recorded yet, writes it to *out and returns true. The caller stores that sample so that it
+   survives a crash, and history queries extend the line up to it. Returns false if the newest sample is recorded. */
 bool swinging_door_held(const struct swinging_door *door, struct history_point *out);
 
 #endif

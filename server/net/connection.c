@@ -139,8 +139,9 @@ static bool is_ours(const struct server_context *server, const char *name)
            (server->tls && tls_is_called(server->tls, name));
 }
 
-/* Returns whether the request has headers that proxies add. Looks for them in two ways, because libwebsockets parses some of
-   these names itself, and its function for custom headers does not find those. */
+/* Returns whether the request has headers that proxies add. Looks for `known` headers with the function for headers that
+   libwebsockets parses itself, and for `custom` ones with the function for all other headers, which does not find the parsed
+   ones. */
 static bool has_forwarding(struct lws *wsi)
 {
     static const enum lws_token_indexes known[] = { WSI_TOKEN_X_FORWARDED_FOR, WSI_TOKEN_HTTP_X_REAL_IP, WSI_TOKEN_HTTP_VIA };

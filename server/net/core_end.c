@@ -73,8 +73,8 @@ static void take_refusal(struct server_context *server, const json_t *refusal)
 }
 
 /* Handles the core's message that it accepts this daemon. If the leading core has just loaded its plant, a standby core now
-   reloads its own. Its models may have changed even if the configuration, which covers only plant file and tag list, is the
-   same. */
+   reloads its own plant. The standby's models may be outdated even if the configuration hash, which covers only plant file and
+   tag list, has not changed. */
 static void take_introduction(struct server_context *server, const json_t *message)
 {
     take_key(server, message);

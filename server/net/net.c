@@ -24,7 +24,7 @@
 #include "net/wall_displays.h"
 #include "session/view/resume.h"
 
-/* while users' actions wait to be written to disk: interval at which the event loop checks whether they are */
+/* interval at which the event loop checks whether users' actions have reached the disk, while at least one action has not */
 static const int64_t SETTLE_NS = 5 * NS_PER_MS;
 /* longest wait at shutdown for users' actions to reach the disk; long enough, because settling_end() gives each action at most a second */
 static const int64_t SETTLED_NS = 1500 * NS_PER_MS;

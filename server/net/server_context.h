@@ -26,7 +26,8 @@ struct stream;        /* defined in stream.h */
 struct http_exchange; /* defined in http_impl.h */
 struct web_site;      /* defined in site.h */
 
-/* Wall displays that have connected since the start (wall_displays.c). */
+/* WALL_DISPLAYS_SEEN: maximum number of wall displays in the list of those that have connected since the daemon's start
+   (wall_displays.c) */
 enum { WALL_DISPLAYS_SEEN = 256 };
 struct wall_displays {
     struct wall_seen {
@@ -44,7 +45,9 @@ struct wall_displays {
 struct tile_wall {
     char wall[NAMED_VIEW_ID_BYTES]; /* id of the wall; "": this element of the array is not used */
     uint64_t leader;                /* id of the session that leads the wall's picture, so that the other displays follow it; 0: none */
-    uint64_t asked, presented;      /* ids of the wall's picture that was requested last, and of the one that was presented last */
+    /* asked: id of the newest picture of the wall that was requested; presented: id of the newest picture that the displays
+       were told to show */
+    uint64_t asked, presented;
     /* size of the wall's picture, adapted to how long the server takes to draw and encode the picture */
     struct quality_ladder made;
 };
@@ -99,7 +102,7 @@ struct server_context {
     } core;
     struct {
         struct http_exchange *waiting; /* list of HTTP requests that wait for a frame, a pick or a reload */
-        int pictures, questions;       /* HTTP requests in progress: for pictures, and for history */
+        int pictures, questions;       /* numbers of HTTP requests in progress: pictures: for pictures; questions: for recorded history */
         int64_t answer_bytes;          /* total bytes of HTTP answers that clients have not read yet */
         int64_t upload_bytes;          /* total size of the files being uploaded, each counted at its full size from the start */
         int uploads;                   /* number of uploads in progress */

@@ -17,7 +17,9 @@ struct stream {
     size_t in_count;
     struct encoded_frame *sending;
     uint32_t seq;
-    enum session_depth depth; /* SESSION_DEPTH_...: whether the frame comes with depth grids, and whether the client lacks these */
+    /* whether the frame comes without depth grids (SESSION_DEPTH_NONE), with grids that the client already has (SENT), or with
+       grids to be sent (NEW) */
+    enum session_depth depth;
     /* index of the depth grid being sent: 0: the only one, or that of the left half of a split view; 1: that of the right half */
     int half;
     enum { SEND_MARKERS, SEND_DEPTH, SEND_HEADER, SEND_PAYLOAD } step;

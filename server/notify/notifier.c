@@ -36,7 +36,7 @@ struct notifier {
     struct outbox *outbox;
     struct recipient_counters *counters; /* by recipient: its counters */
     counter *lost, *spool_good;
-    bool *failing;   /* by recipient: true: the last attempt to send to it failed */
+    bool *failing;   /* by recipient: true: the last attempt to send a message to this recipient failed */
     uint64_t number; /* number of the last alarm change that the notifier has processed */
     bool looked, unsaved;
     /* value of outbox_counts.lost that the metrics already include; not 0 at the start if a reload restored the outbox */

@@ -99,8 +99,8 @@ static void queue_item(struct outbox *outbox, int recipient, const struct episod
 {
     struct recipient_box *box = &outbox->boxes[recipient];
     int index = (int)(episode - outbox->episodes);
-    /* true: the alarm was announced before and is now sent again or escalated, so it is queued only if the queue does not have
-       it already */
+    /* true: a notification of this alarm was already made, or this is a later escalation step; the alarm is then queued only if
+       it is not in the recipient's queue yet */
     bool may_wait = step > 0 || episode->told_us;
     for (size_t i = 0; may_wait && i < box->waiting.count; i++)
         if (box->waiting.at[i].episode == index)

@@ -91,7 +91,9 @@ static uint32_t find_place_near(const struct bodies *bodies, const float at[3], 
     }
     for (int k = 0; k < 8; k++) {
         int32_t cell[3];
-        bool again = false; /* true: this cell is the same as one of the cells tried before, and has already been searched */
+        /* true: along one axis, the adjacent cell is too far away to be searched, so this cell equals one that was already
+           searched */
+        bool again = false;
         for (int i = 0; i < 3; i++) {
             cell[i] = k >> i & 1 ? beside[i] : own[i];
             again |= (k >> i & 1) && beside[i] == own[i];

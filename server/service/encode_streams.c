@@ -14,8 +14,8 @@ static const int64_t JOIN_NS = 2 * NS_PER_S, JOIN_MAX_NS = 64 * NS_PER_S;
 /* maximum number of packets that a client may lag behind its stream and still get all that it missed; also the maximum number
    of frames that are planned but not encoded yet */
 enum { MAX_LAG_PACKETS = ENCODE_STREAM_KEPT / 2 };
-/* half of the limit on the bytes of sent packets that a stream keeps for clients that missed some; if the last key frame is
-   larger than this, the limit is twice the key frame's bytes */
+/* limit on the bytes of sent packets that a stream keeps for clients that missed some: twice KEPT_BYTES or, if that is more,
+   twice the bytes of the last key frame */
 static const size_t KEPT_BYTES = 64 * 1024;
 
 /* --- members of streams ----------------------------------------------------------------------------------------------- */

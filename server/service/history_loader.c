@@ -136,7 +136,8 @@ static void look_at_span(struct history_loader *loader)
                             : history_span(loader->reader, &first_us, &last_us);
     if (!any) {
         first_us = 0;
-        loader->spanned_ns = 0; /* nothing is recorded yet: makes the thread check again soon, and at the next request */
+        /* 0: nothing is recorded yet, so the thread looks for the start of history again soon, and at the next request */
+        loader->spanned_ns = 0;
     }
     pthread_mutex_lock(&loader->thread.lock);
     loader->first_us = first_us;

@@ -25,7 +25,8 @@ int scheduler_share(enum urgency urgency);
 /* Returns a client's charge when it enters the queue: the drawing time charged to it so far, but at least the charge of the
    client served last. So time that a client left unused gives it no advantage. */
 int64_t scheduler_asked(int64_t spent_ns, int64_t served_ns);
-/* Returns whether client a goes before client b: a was charged less, or both were charged the same and a's request is older. */
+/* Returns whether client a is served before client b: because a was charged less drawing time or, if both were charged the
+   same, because a's request is older. */
 bool scheduler_before(int64_t a_spent_ns, int64_t a_asked_ns, int64_t b_spent_ns, int64_t b_asked_ns);
 
 /* Returns the class (urgency) of the request to draw now. asked_ns: by class: when the oldest request of the class was made;

@@ -20,7 +20,8 @@ struct time_accounts { /* zero-initialise; free with time_accounts_finish() */
     int64_t served_ns[SCHEDULER_SHARES];
 };
 
-/* Adds a client to the account with that id; creates the account if needed. Returns it; time_accounts_leave() releases it. */
+/* Adds a client to the account with that id; creates the account if needed. Returns the account; time_accounts_leave() removes
+   the client again. */
 struct time_account *time_accounts_join(struct time_accounts *accounts, uint64_t id);
 /* Removes a client from the account and sets *account to NULL. An account without clients is kept until other accounts were
    charged as much drawing time, so that a client cannot clear its charge by reconnecting. */

@@ -168,13 +168,15 @@ void session_take_plant(struct session *session, const char *carried)
     if (!session->hello)
         return;
     session->owed.following |= session->following.left != 0;
-    /* if the leader has gone, its last view was still shown; the view belongs to the old plant, so the session returns to its own view */
+    /* a follower whose leader has gone still showed the leader's last view; that view belongs to the old plant, so the follower
+       now returns to its own view */
     session->following.left = 0;
     session_look_again(session, &before, carried);
     const bool had_pictures = !session->scope.tags;
     session_scope_begin(session);
     if (had_pictures != !session->scope.tags)
-        /* the display now shows pictures and did not before, or vice versa; the client must connect again to get the right size */
+        /* in the new plant, the display shows pictures and did not before, or the reverse. Closes the session, so that the
+           client connects again and gets the right picture size */
         session_close(session, 1012, "the panes of the display have changed");
     struct message_error error = { 0 };
     if (session->identity.holder.views[0] && !session_scope_view(session, session->scope.named, &session->view, &error))

@@ -10,8 +10,8 @@
 #include "surface/surface_impl.h"
 
 #define TIME_OF_SPACING 3.0 /* diffusion time t of the heat method, in multiples of the squared mean edge length */
-/* sqrt(t) is at least twice the size of the surface (largest distance) divided by this. On large surfaces, this enlarges t so
-   that heat does not underflow */
+/* lower limit of the diffusion time t: sqrt(t) is at least twice the size of the surface (its largest distance) divided by
+   MAX_DECAY. Heat falls exponentially with distance / sqrt(t), and would underflow on large surfaces with a smaller t */
 #define MAX_DECAY 500.0
 #define MAX_SOURCES 32 /* number of sources (points from which distances are computed) that are checked, spread evenly over all sources */
 #define BLOCK 8        /* number of sources (points from which distances are computed) for which the heat method solves at a time */

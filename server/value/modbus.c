@@ -32,7 +32,9 @@ static void read_block(struct modbus_source *modbus, size_t index)
     int64_t now_ns = clock_mono_ns(), next_ns = block->due_ns + block->scan_ms * NS_PER_MS;
     modbus->asked_ns = now_ns;
     if (status < 0 && modbus_manners_excuse_read(modbus, status, unit->state == UNIT_UP))
-        return; /* keeps the due time of the block (tags read by one request), so that the block is read first on the next connection */
+        /* does not move the block's due time on, so that this block (tags read by one request) is the first to be read on the
+           next connection */
+        return;
     /* a late block (tags read by one request) skips the reads that it missed instead of catching up in a burst */
     block->due_ns = next_ns > now_ns ? next_ns : now_ns + block->scan_ms * NS_PER_MS;
     counter_inc(status == 0 ? modbus->reads_ok : modbus->reads_failed, 1);

@@ -78,7 +78,8 @@ void stamped_writer_add(struct stamped_writer *writer, int tag, const struct sta
         writer->worst_skew_ns = utc_ns - writer->utc_ns;
     if (!quality_is_bad(value->quality)) {
         decode_number(&writer->plant->tags[tag], value->value, &sample);
-        /* takes the publisher's quality code instead of ours, because it is more specific, unless ours is worse */
+        /* uses the quality code that the publisher sent, because it is more specific than the code from our own decoding,
+           unless our own code is worse */
         if (!quality_is_worse(sample.quality, value->quality))
             sample.quality = value->quality;
         if (was_kept && quality_is_good(sample.quality))

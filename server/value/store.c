@@ -294,8 +294,8 @@ static bool hold(struct store *store, const struct sample *sample, int64_t now_m
     struct held *held = &store->tags[sample->tag];
     bool bad = quality_is_bad(sample->quality), finite = isfinite(sample->value), value_changed = false;
     if (now_mono_ns < held->sampled_mono_ns) {
-        /* Ignores a sample older than the last one. An exception: if the tag is dead and the sample is not older in UTC than
-           the last value, the sample shows that the lost source is back. */
+        /* Ignores a sample older than the tag's last sample, with one exception: the tag was marked dead (its source was lost),
+           and the sample is not older in UTC than the tag's last value. Then the sample shows that the source is back. */
         if (!held->dead || !held->has_value || now_utc_ns < held->received_utc_ns)
             return false;
         now_mono_ns = held->sampled_mono_ns;

@@ -30,9 +30,9 @@ struct sign_ins;
 struct sign_ins *sign_ins_create(void);
 void sign_ins_destroy(struct sign_ins **table); /* frees the table and sets *table to NULL; accepts a pointer to NULL */
 
-/* Begins a log-in with new secrets. Each address may have a few log-ins in progress; another one replaces the oldest of the
-   same address, so that no address displaces other addresses' log-ins. Returns the log-in, valid until the next call; NULL: the
-   system's random number generator failed. */
+/* Begins a log-in with new secrets. An address may have SIGN_INS_OF_ADDRESS log-ins in progress; a further log-in replaces the
+   oldest of the same address. If the table is full, it replaces the oldest log-in of all. Returns the log-in, valid until the
+   next call; NULL: the system's random number generator failed. */
 const struct sign_in *sign_ins_begin(struct sign_ins *table, const uint8_t address[16], const char *path, int64_t now_ns);
 /* Removes the log-in that the OpenID value `state` identifies from the table and copies it to *out, so that it can be completed
    only once. Returns false if there is none, it has expired, or another browser began it. */

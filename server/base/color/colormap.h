@@ -11,10 +11,11 @@ struct colormap {
     /* name: "relief" (the default) and "calm" (both low contrast, for shaded 3D), "viridis", "cividis", "diverging", "turbo" */
     char name[128];
     uint8_t rgb[256][3]; /* colours of values from MIN (index 0) to MAX (index 255) */
-    /* largest change of lightness L* that shading may cause, up or down: at most COLORMAP_SHADING, less for maps that encode
-       much of the value in lightness */
+    /* largest change of the CIELAB lightness L*, up or down, with which shading may draw a surface: COLORMAP_SHADING, or less
+       for maps whose colours differ mainly in lightness */
     double shading;
-    /* true if 95 of 100 shaded pixels are read correctly to within 3 % of the range, even after JPEG compression and by deuteranopes */
+    /* true: from 95 of 100 pixels of a shaded surface, the value can be read off the legend to within 3 % of the range, even
+       after JPEG compression and by deuteranopes */
     bool safe;
     uint8_t below[3], above[3]; /* colours for values below MIN and above MAX, clearly different from all colours of the map */
 };

@@ -12,7 +12,8 @@
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
-#define XXH_STATIC_LINKING_ONLY /* keeps the state of the hash on the stack, not on the heap */
+/* makes xxhash.h define the struct of the hash state, so that the state can be on the stack instead of the heap */
+#define XXH_STATIC_LINKING_ONLY
 #include <xxhash.h>
 
 #include "base/files/atomic_file.h"

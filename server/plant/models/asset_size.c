@@ -10,13 +10,14 @@
 #include "base/math/search.h"
 #include "base/mem.h"
 
-/* Bounds of plausible sizes in metres: halls and platforms are below LARGE_M, transmitters above SMALL_M. An asset is also implausible if
-   it exceeds both LARGE_BESIDE_M and TIMES_MEDIAN times the median size of the plant's assets. */
+/* A plausible size of an asset is below LARGE_M, as halls and platforms are, and above SMALL_M, as transmitters are, in metres.
+   A size is also implausible if it exceeds both LARGE_BESIDE_M metres and TIMES_MEDIAN times the median size of the plant's
+   assets. */
 #define LARGE_M 300.0
 #define SMALL_M 0.03
 #define LARGE_BESIDE_M 60.0
 #define TIMES_MEDIAN 50.0
-/* Usual sizes: most assets have a longest side between these two lengths in metres. */
+/* The longest side of most assets is between USUAL_LOW_M and USUAL_HIGH_M metres. */
 #define USUAL_LOW_M 0.1
 #define USUAL_HIGH_M 60.0
 

@@ -8,9 +8,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Number of recent samples kept. A client that is briefly busy (its page loads, a decoder starts) looks like a slow network for
-   one or two samples; a slow network stays slow. So the minimum of the last two samples counts, and of the last three for
-   decoding. */
+/* Number of recent samples that are stored. A client that is briefly busy (its page loads, a decoder starts) looks like a slow
+   network for one or two samples; a slow network stays slow. So the minimum of the last two samples is used, and for the
+   decoding time the minimum of the last three. */
 enum { CHANNEL_LAST = 3 };
 struct channel_last { /* ring buffer of the last samples of one measured quantity, such as the round trip; zero-initialise */
     double at[CHANNEL_LAST];

@@ -25,8 +25,8 @@ struct quality_ladder { /* chooses the quality and size of one client's frames; 
        step; easy_since_ns: client and server can handle a larger picture; bad_since_ns: decoding takes too long */
     int64_t good_since_ns, easy_since_ns, bad_since_ns;
     int64_t up_ns, down_ns; /* up_ns: monotonic time of the ladder's last step up; down_ns: of its last step down */
-    /* time in nanoseconds that conditions must hold before the ladder may step up again; doubles if the last step up did not
-       hold */
+    /* nanoseconds for which the conditions for a step up must hold before the ladder takes the step; doubles if the last step
+       up did not hold */
     int64_t patience_ns;
 };
 

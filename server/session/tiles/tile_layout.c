@@ -29,8 +29,8 @@ struct tile_layout tile_layout_scale(const struct tile_layout *layout, double sc
     struct tile_layout out = *layout;
     out.width_px = scaled(layout->width_px, scale);
     out.height_px = scaled(layout->height_px, scale);
-    /* Scales the gaps between tiles, and the margin. Uses the factor by which the tile itself shrank, if rounding to whole
-       pixels made that smaller than `scale`. */
+    /* Scales the gaps between tiles, and the margin. The factor is `scale` or, if rounding to whole pixels made the tile shrink
+       more than that, the factor by which the tile shrank. */
     double across = fmin(scale, (double)out.width_px / layout->width_px), down = fmin(scale, (double)out.height_px / layout->height_px);
     out.gap_px[0] = (int)lround(layout->gap_px[0] * across);
     out.gap_px[1] = (int)lround(layout->gap_px[1] * down);

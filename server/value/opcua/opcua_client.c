@@ -124,7 +124,7 @@ static enum opcua_policy policy_of(const UA_EndpointDescription *endpoint)
         if (is_text(endpoint->securityPolicyUri, opcua_policy_uri(policy)) &&
             mode == (policy == OPCUA_NONE ? UA_MESSAGESECURITYMODE_NONE : UA_MESSAGESECURITYMODE_SIGNANDENCRYPT))
             return policy;
-    return OPCUA_BEST; /* the endpoint uses no security policy that we support, or does not both sign and encrypt */
+    return OPCUA_BEST; /* OPCUA_BEST: no policy that we support, or the endpoint does not both sign and encrypt */
 }
 
 static bool takes_us(const struct opcua_client *client, const UA_EndpointDescription *endpoint)
