@@ -38,8 +38,9 @@ static void lead(struct lease *lease)
 void lease_saw(struct lease *lease, const struct lease_row *row, int64_t now_ns)
 {
     bool same = lease->known && is_same(row, &lease->row);
-    /* the last leader's offer of the lease to this node counts only if `epoch` in the database row equals that last seen by
-       this node: a row with another epoch may be an old one, from a restored database */
+    /* a row without a leader that names this node as standby is the last leader's offer of the lease to this node. It counts
+       only if the row's `epoch` equals the one that this node saw last: a row with another epoch may come from a restored, old
+       copy of the database */
     if (!same)
         lease->offered = lease->known && row->epoch == lease->row.epoch && !row->leader[0] && !strcmp(row->standby, lease->node);
     if (lease->leads && (!is_ours(lease, row) || row->epoch != lease->row.epoch))
@@ -48,8 +49,8 @@ void lease_saw(struct lease *lease, const struct lease_row *row, int64_t now_ns)
     else if (!lease->leads && lease->bids && is_ours(lease, row))
         lead(lease);
     else if (!same)
-        /* the lease's database row has changed since this node sent its bid: even if the bid reaches the database late, it can
-           no longer succeed, so this node stops waiting for its outcome */
+        /* the row has changed since this node sent its bid. A bid succeeds only while the row is unchanged, so a bid that
+           reaches the database late would fail: this node stops waiting for its outcome */
         lease->bids = false;
     if (!same)
         lease->seen_ns = now_ns;
@@ -112,8 +113,8 @@ bool lease_promise(struct lease *lease, int64_t now_ns)
 
 void lease_renew(struct lease *lease, const char *standby)
 {
-    /* the renewal is about to name another standby in the lease's database row, so the previous standby's promises not to bid
-       no longer count */
+    /* from now on, promises of the previous standby not to bid no longer extend the lease, because the renewal may already have
+       made another core the standby in the database row */
     if (strcmp(lease->counts, standby) != 0)
         lease->counts[0] = 0;
 }

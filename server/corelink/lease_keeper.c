@@ -296,8 +296,8 @@ static void bid(struct lease_keeper *keeper)
     }
 }
 
-/* Extends this leader's lease without the database while the lease's database row names this core as its own standby, because
-   no other core may bid for the lease then. */
+/* Extends this leader's lease without the database, while the lease's database row names this core as its own standby
+   (maintenance): only the standby named in the row may bid for the lease, so no other core can take it. */
 static void promise_itself(struct lease_keeper *keeper)
 {
     pthread_mutex_lock(&keeper->thread.lock);

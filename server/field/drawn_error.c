@@ -364,11 +364,12 @@ static float find_erring(const struct asset_view *file, const struct asset_level
     return largest;
 }
 
-/* Returns the error to give to all vertices of a level of which too large a part has interpolation errors; 0: the part is
-   small. Distances along the surface are measured on the same triangles. If most triangles are too long for the field, the
-   distances are wrong, too, so that even triangles without interpolation errors cannot be trusted
-   (tests/bench/notes/windows.md). Thresholds 1, 1/2, 1/4, ... are tried in this order. If errors reach a threshold on the
-   fraction MARK_ALL of the level's area, the result is twice that threshold, but at most the level's largest error. */
+/* Returns the error with which all vertices of a level are marked, because too large a part of the level has interpolation
+   errors; 0: the part is small enough. All vertices are marked, because distances along the surface are measured on the same
+   triangles. If most triangles are too long for the field, these distances are wrong too, even at triangles without
+   interpolation errors (tests/bench/notes/windows.md). Thresholds 1, 1/2, 1/4, ... are tried in this order. If at least the
+   fraction MARK_ALL of the level's area has errors of a threshold or more, the result is twice that threshold, but at most the
+   level's largest error. */
 static float error_of_all(const struct weights *weights, const float erring[WEIGHTS_ERRING], float largest)
 {
     for (int b = 0; b < WEIGHTS_ERRING && weights->distance != DISTANCE_EUCLIDEAN; b++)

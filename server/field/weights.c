@@ -513,9 +513,9 @@ static void make_column(const struct weights *weights, uint32_t member, size_t b
         kernel_shepard(&column, term);
 }
 
-/* Returns the cached columns (sensors' weights) to prefetch while the first `done` terms are being added: the next ones of this
-   block, or the first ones of the next block. They may not be filled yet. NULL: there are fewer than KERNEL_COLUMNS, or they
-   are not cached. */
+/* Returns the KERNEL_COLUMNS cached columns (sensors' weights) to prefetch while the terms before index `done` are being added:
+   the next columns of this block of vertices or, after its last ones, the first columns of the next block. Their memory may not
+   be filled yet. NULL: fewer than KERNEL_COLUMNS columns are left, or they are not cached. */
 static const float *const *columns_after(const struct weights *weights, size_t begin, const struct weights_terms *terms, size_t done,
                                          const float **room)
 {

@@ -295,10 +295,11 @@ static int64_t typical_spacing(struct import_series *series, size_t count)
     return typical_us;
 }
 
-/* Returns the longest time between two samples of a series that is not a gap. `Stale s` of the tag list counts only if the
-   series is fast enough for it, because it is meant for live readings. A series of two samples has no rhythm, since the time
-   between the two may itself be the gap. It uses the median of a typical series or, if no series has a rhythm, the longest time
-   that the historian leaves between two points. */
+/* Returns the longest time between two samples of a series that does not count as a gap: normally a multiple of the series'
+   median time between samples. `Stale s` of the tag list is used instead if it is at least the median; a shorter one is meant
+   for live readings, which come faster. A series of two samples has no usable median, since the time between the two may itself
+   be the gap. It uses the median of a typical series or, if no series has one, the longest time that the historian leaves
+   between two points. */
 static int64_t longest_gap(const struct import_params *params, const struct plant_tag *tag, struct spacing *spacing, int64_t typical_us,
                            bool exported)
 {
@@ -403,8 +404,8 @@ static void add_row(struct filling *filling, int tag, int64_t t_us, double value
     rows->at[rows->count++] = (struct history_row){ tag, { t_us, value, quality } };
 }
 
-/* Returns true if a point in history has no value because recording ended there: the tag's values are unknown until the next
-   point. */
+/* Returns true if the point is the end of a recording: it has no value and the quality Bad_NoCommunication, so the tag's values
+   are unknown until the next point. */
 static bool is_end_of_line(const struct history_point *point)
 {
     return point->quality == QUALITY_BAD_NO_COMMUNICATION && isnan(point->value);

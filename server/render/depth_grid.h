@@ -22,7 +22,7 @@ struct depth_cell {
 struct depth_lens {
     bool orthographic;
     double offset, factor;
-    /* A difference in depth within a cell counts as a step, which divides the cell, if it exceeds step * depth + least_step. */
+    /* a cell is divided by a step if two of its depths differ by more than step * depth + least_step */
     float step, least_step;
     /* the ground that receives shadows: its depth at the pixel (x, y) is ground[0] x + ground[1] y + ground[2] */
     bool has_ground;

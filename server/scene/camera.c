@@ -79,10 +79,11 @@ static void safe_box(const double min_m[3], const double max_m[3], double safe_m
     }
 }
 
-/* Fits a box along one axis of the picture. from, to: range of the picture to fill, as tangents of its two bounding planes; in an
-   orthographic view, as positions in units of half a picture. low: maximum over the box's corners of `z * from - x`; high: the same of
-   `x - z * to`. There, x is a corner's coordinate along this axis, and z that along the view, both relative to the box's centre. The planes
-   then touch the box, with the eye between them. */
+/* Data for fitting a box into a range of the picture along one of the picture's axes. from, to: ends of that range, as slopes
+   (tangents) of the two planes through the eye that bound it; in an orthographic view, as positions in units of half a picture.
+   low: maximum over the box's corners of `z * from - x`; high: maximum of `x - z * to`. There, x is a corner's coordinate along
+   the axis, and z its coordinate along the view, both relative to the box's centre. From low and high follows the eye position
+   at which both planes touch the box. */
 struct clip_side {
     double from, to, low, high;
 };

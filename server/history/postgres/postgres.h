@@ -43,9 +43,10 @@ struct postgres;
 struct postgres *postgres_start(const struct postgres_params *params);
 /* Adds to the metric that counts points deleted by retention before they were sent. Call from any thread. */
 void postgres_count_lost(struct postgres *postgres, int64_t points);
-/* Makes this daemon the only writer to the database from to_us on. from_us: time of the last sample mirrored from the former
-   leader; 0: no sample was mirrored, so each tag's recording by the former leader is ended at its last point in the database.
-   Points that the former leader sent after from_us are read from the database as in postgres_fill(). Call from any thread. */
+/* Makes this daemon the only writer to the database, for points from to_us on. from_us: time of the last sample that this
+   daemon received from the former leader. Points that the former leader sent to the database after from_us are read from there
+   as in postgres_fill(). from_us 0: no sample was received; each tag's recording by the former leader then ends at its last
+   point in the database. Call from any thread. */
 void postgres_lead(struct postgres *postgres, int64_t from_us, int64_t to_us);
 /* Once more reads the span just before this daemon became the leader from the database, because the former leader may have sent
    more points for that time. Call from any thread. */

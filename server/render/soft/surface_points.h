@@ -24,11 +24,12 @@ struct eight_points {    /* eight surface points */
 
 /* corners of the triangles of eight surface points, relative to the points; weigh() computes the corner weights from these */
 struct corners {
-    /* a, b: x and y of the vector from the point to the corner, in pixels; multiplied by clip w if a corner of the triangle cannot be
-       projected */
+    /* a, b: x and y of the vector from the point to the corner, in pixels. If a corner of the triangle cannot be projected,
+       both are multiplied by the corner's clip-space w */
     float a[3][LANES], b[3][LANES];
     float w[3][LANES]; /* 1 / clip w of the corner; 1 if a corner of the triangle cannot be projected */
-    /* for the interpolation of depth: g: 1, or clip w if a corner of the triangle cannot be projected; z: depth * g */
+    /* for the interpolation of depth: g: 1 or, if a corner of the triangle cannot be projected, the corner's clip-space w; z:
+       the corner's depth * g */
     float z[3][LANES], g[3][LANES];
 };
 

@@ -37,13 +37,13 @@ void quality_ladder_init(struct quality_ladder *ladder);
 void quality_ladder_begin(struct quality_ladder *ladder, const struct channel *channel, double pixels);
 /* Returns the encoding quality and the scale of pictures at a quality step, for the picture size that the ladder has chosen. */
 struct rung quality_ladder_rung(const struct quality_ladder *ladder, int step);
-/* Returns the ladder step for all viewers of one view, so that each frame is drawn and encoded once. It is the best step that
-   at least three quarters of the viewers can receive. The step is worse if sending its frames to all would occupy the event
-   loop. counts: number of viewers at each step. seen: ladder of the session whose view the viewers see. Returns a negative
-   number if there are too few viewers to share a step. */
+/* Returns the common quality step of all viewers of one view, with which each frame is drawn and encoded once for all. The step
+   is the best one that at least three quarters of the viewers can receive, or a worse one if sending frames of that quality to
+   all would occupy the event loop. counts: number of viewers whose own step is each step. seen: ladder of the session whose
+   view is shared; it knows the size of frames. Returns a negative number if there are too few viewers to share a step. */
 int quality_ladder_common(const struct quality_ladder *seen, const int counts[QUALITY_LADDER_STEPS]);
-/* Returns the step for this client: the common one, or the client's own step if that is much worse. common negative: the
-   client's own step. */
+/* Returns the quality step for this client: `common`, the step of all viewers of its view, or the client's own step if that is
+   much worse. common negative: there is no common step, so the client's own step. */
 int quality_ladder_step(const struct quality_ladder *ladder, int common);
 /* Records that the client acknowledged a preview of that quality step and size in bytes, and adjusts the ladder's step. */
 void quality_ladder_on_ack(struct quality_ladder *ladder, const struct channel *channel, int step, size_t bytes, int64_t now_ns);

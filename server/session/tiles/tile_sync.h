@@ -20,10 +20,10 @@ struct session_tiles { /* tiles that take part in a wall's picture (neither drop
     struct quality_ladder *made;
 };
 
-/* Returns true if a new picture may be requested (or may replace one in flight) and a member wants it; fills requests[] with
-   one request per member. All requests have the same view, and a quality that even the slowest client and the server can keep
-   up with. number: sequence number of the new picture, larger than the last. Call session_requested() once the render service
-   accepts them. */
+/* If a member wants a new picture of the wall, and one may be requested now (or may replace one in flight), fills requests[]
+   with one request per member and returns true. All requests have the same view, and a quality that even the slowest client and
+   the server can keep up with. number: sequence number of the new picture, larger than the last. Call session_requested() once
+   the render service accepts the requests. */
 bool session_tiles_next_request(const struct session_tiles *tiles, uint64_t number, int64_t now_ns, struct frame_request requests[]);
 /* Makes all members show, at one instant, the newest picture that every member has, if its number exceeds *presented. If nothing is in
    flight and some members have pictures that others lack, requests another picture for all. */

@@ -5,8 +5,8 @@
 #define SURFACE_REPAIR_CROSSING_FACES_H
 #include "surface/repair/parts.h"
 
-/* An edge counts as crossing a face of its own part only if both its ends are at least this far from the face's plane. Unit:
-   the part's reach (distance up to which other surfaces count as touching it, parts.h). */
+/* minimum distance of both ends of an edge from the plane of a face of the same part for the edge to count as crossing the
+   face. Unit: the part's reach (distance up to which other surfaces count as touching it, parts.h) */
 #define CROSSING_CLEAR 0.05
 
 /* Returns by model triangle: 1 if an edge of one of its triangles in parts->solid (the surface before sampling) may pass

@@ -49,9 +49,10 @@ static void face_outwards(struct parts_finding *f)
     mem_free(votes);
 }
 
-/* Finds walls: faces where two bodies touch with identical vertices, so that welding left one face of two. A wall is a patch (triangles
-   connected by edges with two faces) that ends at edges with three or more faces. Its triangles occur twice as often in the model as the
-   others of its part. Walls, and fins that stand on a surface, are no boundary of a body: sets body_parts.side to 0 for them. */
+/* Finds walls and fins, which bound no body, and sets body_parts.side to 0 for their triangles. A wall is a patch (triangles
+   connected by edges with two faces) where two bodies touch with identical vertices, so that welding left one face of two. It
+   ends at edges with three or more faces, and its triangles occur in the model at least twice as often as the part's least
+   frequent ones. A fin is a sheet that stands on a surface. */
 static void drop_walls(struct parts_finding *f, const uint32_t *times)
 {
     struct body_parts *parts = f->parts;

@@ -47,7 +47,8 @@ static void outwards(const struct seams *s, uint32_t e, uint32_t p, double along
     vec_sub(s->mesh->points[edge[edge[0] == p]], s->mesh->points[p], along);
 }
 
-/* Returns whether the faces at two edges that run alongside each other lie on each other, on the same side of the edges. */
+/* Returns whether two border edges in the same direction have their faces on the same side and nearly in one plane, so that one
+   face lies on the other. */
 static bool lie_on_each_other(const struct seams *s, uint32_t e, uint32_t f)
 {
     const uint32_t edges[2] = { e, f };
@@ -65,9 +66,9 @@ static bool lie_on_each_other(const struct seams *s, uint32_t e, uint32_t f)
     return vec_dot(side[0], side[1]) > FLUSH * sqrt(vec_dot(side[0], side[0]) * vec_dot(side[1], side[1]));
 }
 
-/* Returns whether merging border points i and j would join their edges although the edges' faces lie on each other. Such faces
-   belong to two bodies that touch. If they were joined, their edges would no longer be borders, so that neither body could be
-   joined to the surface on the other side of the gap. */
+/* Returns whether merging border points i and j would join two border edges whose faces lie on each other. Such faces belong to
+   two bodies that touch. Once joined, the two edges would no longer be borders, so that the gap between the two bodies and the
+   rest of the surface could not be closed. */
 static bool would_fold(const struct seams *s, size_t i, size_t j)
 {
     const struct borders *b = s->borders;
@@ -97,16 +98,17 @@ static void join_near(void *arg, size_t i, size_t j, double distance_m)
         mesh_edit_merge_points(s->edit, b->points[i], b->points[j], distance_m);
 }
 
-/* Returns the other end of a border edge that ends at p. n: index in borders->at, whose element is the edge's index. */
+/* Returns the other end point of a border edge that ends at point p. n: index of the element of borders->at that has the edge's
+   index. */
 static uint32_t beyond(const struct seams *s, uint32_t n, uint32_t p)
 {
     const uint32_t *edge = s->borders->edges[s->borders->at[n]];
     return edge[edge[0] == p];
 }
 
-/* Returns whether the border at point p runs along edge e: whether a neighbour of p on the border is on the line of e too.
-   Required because a single point may be near an edge by chance in a model with many cracks. towards: required direction of the
-   border from p; NULL: either. */
+/* Returns whether a border edge from point p runs along edge e: whether the other end of such an edge is within within_m of the
+   line through e. A single point may be near e by chance in a model with many cracks, so this test of a second point is needed.
+   towards: that border edge must run in this direction; NULL: in any direction. */
 static bool runs_along(const struct seams *s, uint32_t p, uint32_t e, const double towards[3], double within_m)
 {
     const struct borders *b = s->borders;
@@ -124,8 +126,8 @@ static bool runs_along(const struct seams *s, uint32_t p, uint32_t e, const doub
     return false;
 }
 
-/* Returns whether the border passes straight through point p along edge e. The border of a gap is rarely that straight, so such
-   a point is a hanging vertex of e (a vertex that lies inside an edge, not at its end). */
+/* Returns whether the border runs along edge e on both sides of point p. The border of a gap is rarely straight at a point, so
+   such a point is a hanging vertex of e (a vertex that lies inside an edge, not at its end). */
 static bool hangs(const struct seams *s, uint32_t p, uint32_t e)
 {
     double forth[3], back[3], within_m = STRAIGHT * s->tolerance_m;
@@ -153,9 +155,9 @@ static bool is_at_end(const struct seams *s, uint32_t p, uint32_t e, uint32_t en
     return !(apart && (have_an_edge(s, p, end) || (hangs(s, p, e) && hangs(s, end, e))));
 }
 
-/* Tries to insert a border point into edge e. A hanging vertex (a vertex that lies inside an edge, not at its end) is inserted
-   immediately, into every edge along which the border runs. If only the nearest edge got it, some of these edges would be
-   joined to each other and the others would stay open. For another point, records e if it is the nearest edge so far. */
+/* Tries to insert border point i into edge e. A hanging vertex (a vertex that lies inside an edge, not at its end) is inserted
+   immediately, and so into every edge along which its border runs: with an insertion only into the nearest edge, the other
+   edges would stay open. For any other point, remembers e if it is the nearest edge so far. */
 static void try_edge(struct seams *s, size_t i, uint32_t e)
 {
     const struct borders *b = s->borders;
