@@ -21,9 +21,10 @@
 #include "helper_program.h"
 
 enum { MAX_FIRST_VIEWS = 16 }; /* maximum number of views drawn with the new plant before the switch */
-/* time limit for writing a user's action to disk; when it expires, the user is told that the action is not kept */
+/* time limit in nanoseconds for writing a user's action to disk; afterwards the user is told that the action is not kept */
 static const int64_t SETTLE_NS = NS_PER_S;
-/* FOLLOW_NS: how long a renderer waits for its core to switch to the new plant; LOOK_NS: interval at which it checks this */
+/* nanoseconds. FOLLOW_NS: how long a renderer waits for its core to switch to the new plant; LOOK_NS: interval at which it
+   checks whether the core has. */
 static const int64_t FOLLOW_NS = 120 * NS_PER_S, LOOK_NS = 20 * NS_PER_MS;
 /* time limit in milliseconds: a reload waits this long for another program to finish changing the plant's folder */
 enum { WAIT_MS = 3000 };

@@ -14,7 +14,7 @@
 #include "commit.h"
 #include "version.h"
 
-/* interval of checks of the render thread, and minimum time between two watchdog messages */
+/* interval in nanoseconds at which the render thread is checked; also the minimum time between two watchdog messages */
 static const int64_t CHECK_INTERVAL_NS = 2 * NS_PER_S;
 enum { START_LIMIT_S = 600 }; /* time limit in seconds for one step of the daemon's start */
 

@@ -30,8 +30,9 @@ struct core_readings {
     /* smallest difference between this machine's monotonic clock and the core's over all messages of this connection; the
        caller sets it to INT64_MAX for a new connection */
     int64_t least_ns;
-    int64_t at_ns;   /* arrival time of this connection's previous message; the caller sets it to 0 for a new connection */
-    /* extra delay of this message, compared with the fastest message of the connection; already included in the ages of the readings */
+    int64_t at_ns;   /* monotonic time when this connection's previous message arrived; the caller sets it to 0 for a new connection */
+    /* nanoseconds by which this message was delayed more than the fastest message of the connection; already included in the
+       ages of the readings */
     int64_t late_ns;
     size_t count;
     struct mirrored *at; /* array with room for one reading of each tag, provided by the caller */

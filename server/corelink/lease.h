@@ -17,11 +17,12 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* time without a renewal after which a follower may bid for the lease */
+/* time in nanoseconds without a renewal after which a follower may bid for the lease; a promise lasts as long */
 #define LEASE_NS (3 * INT64_C(1000000000))
-#define LEASE_HOLD_NS (2 * INT64_C(1000000000)) /* time for which a leader may act after it has sent a request that is then confirmed */
+/* nanoseconds, counted from the sending of a request that is then confirmed, for which a leader may act */
+#define LEASE_HOLD_NS (2 * INT64_C(1000000000))
 #define LEASE_RENEW_NS (500 * INT64_C(1000000)) /* interval between renewals */
-#define LEASE_LOOK_NS (250 * INT64_C(1000000))  /* interval at which a follower reads the row in the database */
+#define LEASE_LOOK_NS (250 * INT64_C(1000000))  /* interval in nanoseconds at which a follower reads the row in the database */
 enum { LEASE_NODE_BYTES = 64 };
 
 struct lease_row {    /* the row in the database that says which core leads */
@@ -45,9 +46,11 @@ struct lease {
     /* while another core leads: true: that core refused this node as its standby, so this node must not bid */
     bool refused;
     bool offered;                  /* while another core leads: true: that core has just offered the lease to this node */
-    int64_t seen_ns;               /* while another core leads: time when the row last changed */
-    int64_t bound_ns;              /* while another core leads: time until which a promise forbids this node to bid */
-    int64_t until_ns;              /* while this node leads: time until which it may act as leader */
+    /* while another core leads: time (nanoseconds of the caller's clock) when this node last saw the row change */
+    int64_t seen_ns;
+    /* while another core leads: time (nanoseconds of the caller's clock) until which a promise forbids this node to bid */
+    int64_t bound_ns;
+    int64_t until_ns;              /* while this node leads: time (nanoseconds of the caller's clock) until which it may act as leader */
     char counts[LEASE_NODE_BYTES]; /* while this node leads: name of the standby whose promises count; empty: none */
 };
 

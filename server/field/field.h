@@ -123,8 +123,8 @@ struct field_sensor {
        sensors */
     uint32_t column;
     bool in_file;       /* true: a column of the file has the sensor's geodesic distances; false: along_m has them */
-    /* [vertex]: geodesic distance from the sensor, if the file lacks it; NULL: not computed yet, or straight-line distances are
-       used */
+    /* [vertex]: geodesic distance from the sensor in metres, if the asset file lacks it; NULL: not computed yet, or
+       straight-line distances are used */
     const float *along_m;
     float strength, decay;
     /* the sensor's value in the weighted sum; scaled to 0..1 for interpolation `paper` (Algorithm 1 of Kim & Suh); for a

@@ -16,7 +16,7 @@ struct layout_sensor {
     uint32_t vertex;       /* index of the asset file's vertex that is nearest to the sensor */
     /* true: a user is trying out the sensor's position, so its geodesic distances are in tried_m instead of the file */
     bool tried;
-    const float *tried_m;  /* [vertex]: geodesic distance from the position that a user is trying out; NULL: not computed yet */
+    const float *tried_m;  /* [vertex]: geodesic distance in metres from the position that a user is trying out; NULL: not computed yet */
     /* by vertex: distance from the sensor in metres along the surface, computed by the heat method; NULL: plantcast-prep has
        not computed heat distances for this group */
     const float *heat_m;
@@ -45,7 +45,7 @@ struct field_layout {
     size_t sensor_count, vertex_count;
     const struct layout_points *points; /* points whose distances are wanted; NULL: the vertices of the asset file */
     bool assumed; /* true: all sensor positions are assumed, so one sensor gives the value of the whole asset (field.h) */
-    float largest_m[DISTANCES]; /* [enum distance_mode]: largest distance between a vertex and a sensor; 0: not computed yet */
+    float largest_m[DISTANCES]; /* [enum distance_mode]: largest distance in metres between a vertex and a sensor; 0: not computed yet */
     /* id of the trial, a set of positions that a user tries out, that moved some of these sensors (field/trials.h); 0: none */
     uint32_t trial;
 };

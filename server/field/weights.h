@@ -55,7 +55,8 @@ struct weights {
        by plantcast-prep all sensors */
     uint32_t *members;
     size_t member_count;
-    /* [vertex]: near_m: distance of the nearest usable sensor; top: scale that keeps weights from overflowing (kernels.h) */
+    /* [vertex]: near_m: distance in metres of the nearest usable sensor; top: scale that keeps weights from overflowing
+       (kernels.h) */
     float *near_m, *top;
     float *total;                /* [vertex]: sum of its weights */
     uint8_t *place;              /* by vertex: enum place */

@@ -6,7 +6,8 @@
 
 #include "gpu/mesh.h"
 
-/* timeout for a frame to arrive from the GPU, much longer than any frame takes; afterwards the GL context counts as hung */
+/* timeout in nanoseconds for a frame to arrive from the GPU, much longer than any frame takes; afterwards the GL context counts
+   as hung */
 static const GLuint64 TIMEOUT_NS = 20ull * 1000000000;
 enum { GRAIN_ROWS = 128 };
 

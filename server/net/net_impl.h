@@ -9,7 +9,8 @@
 
 #define HANDED_PROTOCOL "plantcast-handed-socket"
 
-#define READINGS_INTERVAL_NS (100 * NS_PER_MS) /* minimum time between two snapshots of the readings, however often readings change */
+/* minimum time in nanoseconds between two snapshots of the readings, however often readings change */
+#define READINGS_INTERVAL_NS (100 * NS_PER_MS)
 
 enum hand_over_step { HAND_OVER_NONE, HAND_OVER_ENDS_POLLING, HAND_OVER_SENDS, HAND_OVER_GIVES, HAND_OVER_DONE };
 

@@ -6,7 +6,8 @@
 #include "net/net_impl.h"
 #include "net/renderers.h"
 
-/* delay between a change of a reading and the next snapshot, so that readings that a device sends together appear in one frame */
+/* delay in nanoseconds between a change of a reading and the next snapshot, so that readings that a device sends together
+   appear in one frame */
 static const int64_t GATHER_NS = 10 * NS_PER_MS;
 
 static int64_t later(int64_t a_ns, int64_t b_ns)

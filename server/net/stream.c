@@ -16,14 +16,15 @@
 
 enum { STREAM_CLOSE_STALLED = 4000, LAST_WORDS_S = 2, BACK_MAX_S = 60, SILENT_S = 6 };
 static const int64_t SILENT_NS = SILENT_S * NS_PER_S;
-/* delay from the start of a drain (moving sessions to other daemons) to the closing of the first session, so that load
-   balancers notice the drain first */
+/* delay in nanoseconds from the start of a drain (moving sessions to other daemons) to the closing of the first session, so
+   that load balancers notice the drain first */
 static const int64_t DRAIN_DELAY_NS = 2 * NS_PER_S;
 static const int64_t DRAIN_NS = 10 * NS_PER_S;
-/* time within which a node that has lost its core (daemon that reads the devices) closes all its sessions, so that they move to
-   other nodes */
+/* nanoseconds within which a node that has lost its core (daemon that reads the devices) closes all its sessions, so that they
+   move to other nodes */
 static const int64_t MOVE_NS = 1 * NS_PER_S;
-static const int64_t MOVING_NS = 200 * NS_PER_MS; /* time after a user's input during which the session's camera counts as moving */
+/* nanoseconds after a user's input during which the session's camera counts as moving */
+static const int64_t MOVING_NS = 200 * NS_PER_MS;
 
 /* --- connecting and disconnecting ------------------------------------------------------------------------------------- */
 

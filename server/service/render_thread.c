@@ -12,7 +12,8 @@ static const int64_t STEP_NS = 10 * NS_PER_MS;
 static const int64_t LIGHT_NS = 4 * NS_PER_MS;
 /* time in nanoseconds for a slow computation of a field, per frame that the render thread draws meanwhile */
 static const int64_t FIELD_NS = 6 * NS_PER_MS;
-/* REBUILD_NS: delay between attempts to create a new GL context; it doubles up to REBUILD_MAX_NS */
+/* REBUILD_NS: nanoseconds between the first two attempts to create a new GL context; the pause doubles with each attempt, up to
+   REBUILD_MAX_NS */
 static const int64_t REBUILD_NS = 100 * NS_PER_MS, REBUILD_MAX_NS = 5 * NS_PER_S;
 /* Maximum time in nanoseconds that changed readings wait for the next refined frame of a view that has had one. Afterwards a
    preview shows them. */

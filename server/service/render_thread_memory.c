@@ -6,8 +6,9 @@
 #include "service/render_thread_impl.h"
 #include "render/frame_pool.h"
 
-static const int64_t MEASURE_INTERVAL_NS = 1 * NS_PER_S; /* interval at which the memory use of caches and process is measured */
-static const int64_t IDLE_TIMEOUT_NS = 10 * NS_PER_S;    /* time without clients after which the renderer's caches are released */
+/* interval in nanoseconds at which the memory use of caches and process is measured */
+static const int64_t MEASURE_INTERVAL_NS = 1 * NS_PER_S;
+static const int64_t IDLE_TIMEOUT_NS = 10 * NS_PER_S;    /* nanoseconds without clients after which the renderer's caches are released */
 static const double FIELD_SHARE = 0.3; /* maximum fraction of the caches' memory for interpolated values and weights of all fields */
 /* Minimum number of bytes reserved for memory other than models and caches: shaders, threads, the plant, and temporary memory
    for drawing a frame or baking a light. */

@@ -3,7 +3,7 @@
 #include "base/clock.h"
 #include "service/render_thread_impl.h"
 
-/* maximum age of a snapshot of readings, and thus the maximum error of the clock and of the ages in a frame */
+/* maximum age in nanoseconds of a snapshot of readings, and thus the maximum error of the clock and of the ages in a frame */
 static const int64_t SNAPSHOT_MAX_AGE_NS = 100 * NS_PER_MS;
 
 void render_thread_refresh(struct render_thread *thread)

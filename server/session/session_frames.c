@@ -27,7 +27,8 @@ static const int64_t MAX_START_WAIT_NS = 1000 * NS_PER_MS;
 /* nanoseconds. If the view changes while a refined frame is being sent, and sending the rest of the frame would take longer
    than this, the rest is not sent. */
 static const int64_t GIVE_UP_NS = 100 * NS_PER_MS;
-static const int64_t RETRY_DELAY_NS = 2000 * NS_PER_MS; /* delay before repeating the request for a frame that failed for lack of memory */
+/* nanoseconds before repeating the request for a frame that failed for lack of memory */
+static const int64_t RETRY_DELAY_NS = 2000 * NS_PER_MS;
 /* assumed ratio of the bytes of a refined (detailed) frame to those of a preview, until a refined frame was sent */
 static const double STILL_OVER_MOVING = 3;
 static const struct encoder_params STILL = { .quality = 92, .full_chroma = true }, DRAFT = { .quality = 42 };

@@ -12,7 +12,7 @@
 #include "views/kept_list.h"
 
 enum { FEWEST_ID_CHARS = 8 /* minimum length of an id: 40 bits, too many for an id to be found by trying */ };
-/* minimum time between two updates of a link's last use: a day, because each change writes the file */
+/* minimum time in microseconds between two updates of a link's last use: a day, because each update writes the file */
 static const int64_t USED_US = INT64_C(86400000000);
 
 /* At most BURST_LINKS new links may be made at once, and one per LINK_US on average. So one user can neither replace all links

@@ -10,7 +10,7 @@
 #include "base/clock.h"
 #include "base/mem.h"
 
-/* maximum time between the beginning of a log-in and the browser's return from the provider */
+/* maximum time in nanoseconds between the beginning of a log-in and the browser's return from the provider */
 static const int64_t LOG_IN_TIMEOUT_NS = 600 * NS_PER_S;
 
 struct sign_ins {

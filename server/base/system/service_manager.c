@@ -28,7 +28,8 @@ enum {
        the interval between requests shorter than EXTENSION_INTERVAL_S */
     MIN_EXTENSIONS = 60
 };
-static const int64_t AT_WORK_NS = 20 * NS_PER_MS; /* processes that used less CPU time than this between two checks count as idle */
+/* CPU time in nanoseconds: if the processes used less than this between two checks, they count as idle */
+static const int64_t AT_WORK_NS = 20 * NS_PER_MS;
 
 /* Sends a datagram to a Unix socket. path: path of the socket's file, or @NAME for an abstract socket. Returns false if it was not
    delivered. */

@@ -23,8 +23,9 @@ enum { NOTES = 128, SPANS = POSTGRES_SPANS };
 /* upper bound on the time between the last recorded points of different tags. If this daemon does not know when it last
    received a sample of the leader, it reads points from the database from this long before its newest recorded point on */
 static const int64_t LINE_END_SPREAD_US = 60 * INT64_C(1000000);
-/* upper bound on the delay until a sample is a point in the files of both the leader and the standby. The thread waits this
-   long before it deletes points that the leader has sent, and before it reads points from the database that this machine lacks */
+/* Upper bound, in nanoseconds, on the delay until a sample is a point in the files of both the leader and the standby. The
+   thread waits this long before it deletes points that the leader has sent, and before it reads points from the database that
+   this machine lacks. */
 static const int64_t OVERLAP_NS = 10 * NS_PER_S;
 static const int64_t LOOK_NS = 30 * NS_PER_S, NEWEST_NS = 5 * NS_PER_S, SAY_LOST_NS = 60 * NS_PER_S;
 

@@ -7,7 +7,7 @@
 
 #include "plant/plant.h"
 
-enum { MQTT_TOPIC_BYTES = 1024 }; /* maximum length of a tag's topic; MQTT itself allows 65535 */
+enum { MQTT_TOPIC_BYTES = 1024 }; /* maximum length in bytes of a tag's topic; MQTT itself allows 65535 */
 
 /* Checks the template of a source's topics. Returns false on errors, with the expected form in `why`. */
 bool mqtt_template_check(const char *text, char why[200]);

@@ -8,7 +8,7 @@
 #include "base/clock.h"
 
 static const size_t LIGHT_BYTES = 256 << 20;
-static const int64_t LOAD_TIMEOUT_NS = 60 * NS_PER_S; /* time to wait for an environment map to load */
+static const int64_t LOAD_TIMEOUT_NS = 60 * NS_PER_S; /* maximum time in nanoseconds to wait for an environment map to load */
 
 static void find_ground(struct light *light)
 {

@@ -9,7 +9,7 @@ static const int64_t SLOW_NS = 80 * NS_PER_MS;
 /* expected transfer time of a frame at a better step, in nanoseconds, below which the ladder steps up to it */
 static const int64_t FAST_NS = 40 * NS_PER_MS;
 static const int64_t MIN_UP_DELAY_NS = 1 * NS_PER_S, MAX_UP_DELAY_NS = 30 * NS_PER_S;
-static const int64_t LASTED_NS = 5 * NS_PER_S; /* time without a step down after which the last step up counts as successful */
+static const int64_t LASTED_NS = 5 * NS_PER_S; /* nanoseconds without a step down after which the last step up counts as successful */
 /* minimum time in nanoseconds between two steps down, because a step reduces the measured lag only some frames later */
 static const int64_t SETTLE_NS = 500 * NS_PER_MS;
 /* decoding time of a frame, in nanoseconds, above which the client cannot keep up with 25 frames a second */

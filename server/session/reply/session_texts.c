@@ -10,7 +10,8 @@
 #include "session/reply/tag_text_cache.h"
 #include "session/session_impl.h"
 
-static const int64_t TAGS_NS = 500 * NS_PER_MS; /* minimum time between two `tags` messages (changed readings) to a client */
+/* minimum time in nanoseconds between two `tags` messages (changed readings) to a client */
+static const int64_t TAGS_NS = 500 * NS_PER_MS;
 
 static void add_owned(const struct session *session, struct text *out, char *text)
 {

@@ -5,8 +5,8 @@
 #include "session/reply/reply.h"
 #include "session/session_impl.h"
 
-/* FLIP_NS: all tiles show a picture at one instant: the slowest client's round trip plus this time after sending it;
-   MAX_FLIP_NS: maximum of that sum */
+/* Nanoseconds. All tiles of a wall show a picture at one instant: the slowest client's round trip plus FLIP_NS, but at most
+   MAX_FLIP_NS, after the server has told the clients to show it. */
 static const int64_t FLIP_NS = 25 * NS_PER_MS, MAX_FLIP_NS = NS_PER_S;
 
 bool session_tile_takes_part(const struct session *session, int64_t now_ns)

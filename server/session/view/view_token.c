@@ -16,8 +16,8 @@
 #include "session/session_impl.h"
 
 enum { MAC_BYTES = 32, DIGITS = 17 };
-/* KEPT_NS: lifetime of a view token. SKEW_NS: how far in the future a token may be dated, because the clock of the daemon that
-   made it may be ahead */
+/* nanoseconds. KEPT_NS: lifetime of a view token. SKEW_NS: how far in the future a token may be dated, because the clock of the
+   daemon that made it may be ahead. */
 static const int64_t KEPT_NS = 86400 * NS_PER_S, SKEW_NS = 7200 * NS_PER_S;
 
 void view_token_add_key(struct view_token_keys *keys, const uint8_t key[VIEW_TOKEN_KEY_BYTES])

@@ -10,9 +10,9 @@
 #include "value/lookup.h"
 #include "value/mqtt/mqtt_impl.h"
 
-/* time limit, from the start of connecting, for the broker to acknowledge the subscription to all topics */
+/* time limit in nanoseconds, from the start of connecting, for the broker to acknowledge the subscription to all topics */
 static const int64_t CONNECT_NS = 10 * NS_PER_S;
-static const int64_t LINE_NS = 60 * NS_PER_S; /* minimum time between two log lines about refused messages */
+static const int64_t LINE_NS = 60 * NS_PER_S; /* minimum time in nanoseconds between two log lines about refused messages */
 
 static bool stopping(const struct mqtt_source *mqtt, int64_t until_ns)
 {

@@ -8,7 +8,7 @@
 #include "value/opcua/opcua_client.h"
 #include "value/opcua/opcua_impl.h"
 
-static const int64_t SLICE_NS = 100 * NS_PER_MS; /* interval at which a call that waits for the server checks stop_fd */
+static const int64_t SLICE_NS = 100 * NS_PER_MS; /* interval in nanoseconds at which a call that waits for the server checks stop_fd */
 
 void opcua_explain(const struct opcua_client *client, UA_StatusCode status, char why[200])
 {
