@@ -2,7 +2,8 @@
 /* Distributes the encoded video to the pipelines of all outputs (RTSP, SRT). */
 #include "outputs.h"
 
-enum { MAX_QUEUED_BYTES = 4 << 20 }; /* maximum number of bytes queued for the pipeline of one output */
+/* if more bytes are queued for the pipeline of one output, that output misses all frames up to the next key frame */
+enum { MAX_QUEUED_BYTES = 4 << 20 };
 static const GstClockTimeDiff SLACK = 500 * GST_MSECOND;
 
 struct output {

@@ -7,7 +7,8 @@
 #include "options.h"
 
 struct video_source;
-/* Starts the requests. `options` must outlive the source. Returns NULL with the reason printed. The caller destroys it. */
+/* Creates a source of pictures and starts its requests. `options` must outlive the source. Returns NULL with the reason
+   printed. The caller destroys the source. */
 struct video_source *source_create(const struct video_options *options);
 void source_destroy(struct video_source **source); /* &NULL is fine; leaves NULL */
 /* Cancels overdue requests, starts requests that are due, and sets *out to what must be shown now. Call it once per frame. The source

@@ -198,8 +198,7 @@ static bool obey(struct matching_run *run)
                                  .confidence = match->asset == asset ? match->confidence : 1,
                                  .reason = mem_strdup("by hand") };
         if (match->node < 0 && match->confidence > 0.98)
-            /* lowers the confidence below 1: the person has chosen only the asset; the sensor's position on it is still assumed
-               */
+            /* lowers the confidence below 1: the person has chosen only the asset; the sensor's position on it is assumed */
             match->confidence = 0.95;
         run->by_hand++;
     }

@@ -16,7 +16,7 @@ struct tag_rows {         /* zero-initialise */
 };
 
 struct tag_source { /* the source of the exported tags' values for the daemon */
-    const char *id; /* id of the source; NULL: write neither source nor addresses */
+    const char *id; /* id of the data source; NULL: the rows of the tag list get neither source nor address */
     bool modbus;    /* true: the source is Modbus; tags without a valid Modbus address are omitted */
     int address_base;
 };

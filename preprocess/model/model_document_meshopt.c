@@ -13,8 +13,8 @@ enum meshopt_filter { NONE, OCTAHEDRAL, QUATERNION, EXPONENTIAL };
 static const char *const modes[] = { "ATTRIBUTES", "TRIANGLES", "INDICES" };
 static const char *const filters[] = { "NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL" };
 
-/* maximum plausible ratio of decoded to compressed bytes: at least 1 byte per 64 bytes of vertex data, and a third of a byte
- * per index (up to 4 bytes) */
+/* Largest accepted ratio of decoded to compressed bytes. The compression itself reaches at most 64 (vertex data: 1 byte for 64
+   bytes; indices: a third of a byte for up to 4 bytes). */
 #define BYTES_PER_BYTE 128u
 
 struct meshopt_view {

@@ -9,7 +9,7 @@
 struct report_concern {
     const struct prepare_asset *asset;
     char *text;
-    double weight; /* severity: the report lists problems with a higher weight first */
+    double weight; /* severity of the problem; the report lists problems with a larger number first */
 };
 /* Lists possible problems, most serious first; *count receives their number. The caller frees the list with report_concerns_free(). */
 struct report_concern *report_concerns(const struct prepare *prepare, size_t *count);

@@ -9,7 +9,7 @@
 
 #define MAX_FLIP_ROUNDS 4  /* maximum number of consecutive rounds of edge flips */
 #define FLAT_OF_ERROR 0.02 /* how far a flip may move the surface, as a share of the level's error_m */
-#define GAIN 0.7           /* largest ratio of the interpolation error after a flip to that before it */
+#define GAIN 0.7           /* an edge is flipped only if that multiplies the interpolation error by at most this */
 #define CROSSING 0.02      /* smallest distance of the diagonals' crossing from the ends of each diagonal, as a share of its length */
 
 #define GRAIN 1024 /* number of flips that a thread processes per unit of work, which takes a few tenths of a millisecond */

@@ -30,7 +30,7 @@
 #define ASIDE 0.1
 /* height of a triangle, relative to the asset's size, below which it counts as degenerate: a few rounding errors of a float */
 #define LINE_OF_SIZE 2.5e-7
-/* number of positions for which address space is reserved, in multiples of the model's */
+/* number of vertex positions for which address space is reserved, in multiples of the number in the model */
 #define MORE_PLACES 12.0
 #define MAX_REPORTED_EDGES 2000 /* maximum number of a coarser level's short edges that are measured for the report */
 /* Number of triangles, as a share of the level's, that a round of splits must be able to add; otherwise subdividing the level

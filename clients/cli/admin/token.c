@@ -77,7 +77,8 @@ static const char *folder_fault(const char *path)
     return fault;
 }
 
-/* Returns NULL if the token file is safe to use, else why it is not. */
+/* Returns NULL if the token file is a regular file of at most MAX_FILE_BYTES that belongs to this user or root, else the reason
+   for refusing it. */
 static const char *file_fault(const struct stat *st)
 {
     if (!S_ISREG(st->st_mode))

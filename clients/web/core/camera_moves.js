@@ -23,7 +23,8 @@ export const wholeOf = ({ assets, plant }) => ({
     max: plant.bounds.max.map((m, i) => Math.max(m, ...assets.map(({ bounds }) => bounds.max[i]))),
 });
 
-// Returns a plant's zoom limits, which are wider than usual for very small or large plants.
+// Returns { near_m, far_m }, the limits of zooming: minimum and maximum distance in metres from the eye to the point zoomed at,
+// or, in an orthographic view, of the picture's height. They are wider than usual for very small or very large plants.
 export function zoomLimits(model) {
     const size = ({ min, max }) => length(subtract(max, min));
     return { near_m: Math.max(LEAST_M, Math.min(USUAL_LIMITS.near_m, size(model.plant.bounds) / 100)),

@@ -176,8 +176,9 @@ export class Connection {
         }, wait);
     }
 
-    // Sends a ping if one is due. Returns how long, in milliseconds, a ping has been unanswered. The time since the server's
-    // last message would mislead, because timers of a hidden page may pause for a minute.
+    // Sends a ping if one is due. If a ping has been unanswered for ANSWER_MS, returns the milliseconds since the server's last
+    // message, else 0. Without an unanswered ping, a long silence proves nothing: timers of a hidden page, which send the
+    // pings, may pause for a minute.
     ask() {
         const now = this.clock.now();
         if (now >= this.nextPing) {

@@ -127,7 +127,8 @@ int chords_of(const ifc_model &in, const curve_piece &piece, double length_mm)
     return std::max(8, static_cast<int>(std::ceil(turn / chord)));
 }
 
-/* Inserts further stations between two stations with the same profile where the curve between them is not straight. */
+/* Where the curve between two cross-sections with the same profile is not straight, appends further sections between them to
+   *out, so that the solid follows the curve. Throws `unsupported` if the two profiles differ. */
 void add_between(const ifc_model &in, const std::vector<curve_piece> &pieces, station from, const station &to, std::vector<station> *out)
 {
     double at = 0;

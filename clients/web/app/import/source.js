@@ -11,7 +11,8 @@ const REASONS = 4, LOOK_MS = 500;
 const labelled = (key, element) => make('label', { class: 'choice' }, make('span', {}, say(`import.source.${key}`)), element);
 
 export class Source {
-    // connect(source) sends the data source { host, port, unit, order, base }, all texts, to the server.
+    // connect(source) sends the Modbus data source { host, port, unit (unit identifier), order (byte order), base (number of
+    // the first register: 0 or 1) }, all texts, to the server.
     constructor({ session, connect }) {
         Object.assign(this, { session, known: '' });
         this.host = make('input', { type: 'text', required: true, maxLength: 253, pattern: '[A-Za-z0-9._][A-Za-z0-9._\\-]*',
