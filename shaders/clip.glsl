@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Clips vertices against the section planes of a view. All vertex shaders output positions in clip space, so the planes are
-// given in clip space, too, and this code serves all of them.
+// given in clip space, too, and all shaders share this code.
 #ifdef CLIP
 out float gl_ClipDistance[6];
 

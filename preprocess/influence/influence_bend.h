@@ -40,8 +40,8 @@ struct influence_bend {
     struct bend_place *places; /* points at which the bend is measured, grouped by drawn triangle */
     size_t count, capacity;
     /* by drawn triangle. area_m2: its area; hidden_m2: the part of that area inside or against other parts; unknown_m2: the
-       part in which the bend is unknown. For triangles of coarse levels, these are numbers of sample points instead of areas.
-       */
+       part in which the bend is unknown. For triangles of coarse levels, these are numbers of sample points instead of
+       areas. */
     double *area_m2, *hidden_m2, *unknown_m2;
     /* by place (corner of an overlap): sums of the sensors' positive and negative weight errors, in fixed point */
     _Atomic int64_t *plus, *minus;

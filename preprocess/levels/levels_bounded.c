@@ -356,8 +356,8 @@ static void measure_face(const struct bounded *b, struct bounded_face *face)
 }
 
 /* Assigns the original vertex `place` to the nearest of the listed faces of the simplified surface; of equally near faces, to
-   the first. Returns that face's index in the list. Tests the face `last` first, because successive places are close together.
-   */
+   the first. Returns that face's index in the list. Tests the face `last` first, because successive places are close
+   together. */
 static int rehome(struct bounded *b, const uint32_t *faces, int count, int last, uint32_t place)
 {
     double nearest_m = INFINITY;
