@@ -8,8 +8,8 @@
 #include "alarm/alarms.h"
 #include "alarm/journal_file.h"
 #include "base/clock.h"
+#include "base/math/search.h"
 #include "base/mem.h"
-#include "tests/support/measure.h"
 #include "tests/support/plant_by_hand.h"
 #include "tests/support/temp.h"
 #include "value/quality.h"
@@ -140,8 +140,8 @@ static bool look_back(void)
         good = good && journal_file_rows(file, &query, count_row, &found) == 0;
         page_ms[i] = (double)(clock_work_ns() - begun_ns) / 1e6;
     }
-    qsort(at_ms, INSTANTS, sizeof(*at_ms), by_size);
-    qsort(page_ms, INSTANTS, sizeof(*page_ms), by_size);
+    qsort(at_ms, INSTANTS, sizeof(*at_ms), compare_doubles);
+    qsort(page_ms, INSTANTS, sizeof(*page_ms), compare_doubles);
     if (good) {
         row("alarms_then_in_a_year_ms", at_ms[INSTANTS / 2], 50);
         row("alarms_journal_page_of_a_year_ms", page_ms[INSTANTS / 2], 50);

@@ -6,6 +6,7 @@
 #include <time.h>
 
 #include "base/clock.h"
+#include "base/math/search.h"
 #include "base/mem.h"
 #include "field/field.h"
 #include "tests/support/measure.h"
@@ -83,8 +84,8 @@ static void measure(struct field_bench *bench, const char *name, void (*change)(
         ms[i] = (double)(clock_mono_ns() - began_ns) / 1e6;
         work_ms[i] = measure_ms(CLOCK_PROCESS_CPUTIME_ID) - before_ms;
     }
-    qsort(ms, ROUNDS, sizeof(*ms), by_size);
-    qsort(work_ms, ROUNDS, sizeof(*work_ms), by_size);
+    qsort(ms, ROUNDS, sizeof(*ms), compare_doubles);
+    qsort(work_ms, ROUNDS, sizeof(*work_ms), compare_doubles);
     mend_all(bench);
     printf("{\"name\": \"%s\", \"value\": %.4f, \"p95\": %.4f, \"unit\": \"ms\", \"cpu\": %.4f", name, ms[ROUNDS / 2],
            ms[ROUNDS * 95 / 100], work_ms[ROUNDS / 2]);
@@ -111,7 +112,7 @@ static void measure_pieces(struct field_bench *bench, const char *kind, void (*c
             ms[count++] = (double)(clock_mono_ns() - began_ns) / 1e6;
         }
     }
-    qsort(ms, count, sizeof(*ms), by_size);
+    qsort(ms, count, sizeof(*ms), compare_doubles);
     mend_all(bench);
     printf("{\"name\": \"field_%zu_%s_hold_ms\", \"value\": %.4f, \"p95\": %.4f, \"unit\": \"ms\", \"goal\": [\"<=\", 10]}\n",
            bench->sensors, kind, ms[count / 2], ms[count * 95 / 100]);

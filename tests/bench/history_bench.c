@@ -5,12 +5,12 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/math/search.h"
 #include "base/mem.h"
 #include "history/historian.h"
 #include "history/history.h"
 #include "history/month.h"
 #include "history/recorder.h"
-#include "tests/support/measure.h"
 #include "tests/support/plant_by_hand.h"
 #include "tests/support/sleep.h"
 #include "tests/support/temp.h"
@@ -209,7 +209,7 @@ static void ask(struct log *log, const char *folder, const struct history_tag *t
         ms[round] = (double)(clock_mono_ns() - begin_ns) / 1e6;
         history_reader_destroy(&reader);
     }
-    qsort(ms, ROUNDS, sizeof(*ms), by_size);
+    qsort(ms, ROUNDS, sizeof(*ms), compare_doubles);
     printf("{\"name\": \"history_20_tags_30_days_%d_points_ms\", \"value\": %.1f, \"unit\": \"ms\", \"goal\": [\"<=\", 200], \"p95\": %.1f,"
            " \"points\": %zu}\n", points, ms[ROUNDS / 2], ms[ROUNDS - 1], found);
     fflush(stdout);
@@ -225,7 +225,7 @@ static void look_back(struct log *log, const char *folder, const struct history_
         history_at(reader, tags, end_us - (int64_t)((noise() + 0.5) * DAYS * 86400 * 1e6), snapshot);
         ms[i] = (double)(clock_mono_ns() - begin_ns) / 1e6;
     }
-    qsort(ms, 50, sizeof(*ms), by_size);
+    qsort(ms, 50, sizeof(*ms), compare_doubles);
     printf("{\"name\": \"history_instant_20_tags_ms\", \"value\": %.2f, \"unit\": \"ms\", \"p95\": %.2f}\n", ms[25], ms[47]);
     snapshot_destroy(&snapshot);
     history_reader_destroy(&reader);

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 
 #include "base/clock.h"
+#include "base/math/search.h"
 #include "base/mem.h"
-#include "tests/support/measure.h"
 #include "tests/support/modbus_device.h"
 #include "tests/support/plant_by_hand.h"
 #include "tests/support/sleep.h"
@@ -48,7 +48,7 @@ static double oldest_ms(const struct snapshot *snapshot, int device, long *wrong
 
 static void print_row(const char *name, double *values, int count, double goal, const char *more, long number)
 {
-    qsort(values, (size_t)count, sizeof(*values), by_size);
+    qsort(values, (size_t)count, sizeof(*values), compare_doubles);
     printf("{\"name\": \"%s\", \"value\": %.0f, \"unit\": \"ms\", \"goal\": [\"<=\", %.0f], \"p95\": %.0f, \"%s\": %ld}\n", name,
            values[count / 2], goal, values[count * 95 / 100], more, number);
     fflush(stdout);

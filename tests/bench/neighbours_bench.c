@@ -11,6 +11,7 @@
 #include <time.h>
 #include <cmocka.h>
 
+#include "base/math/search.h"
 #include "base/mem.h"
 #include "field/field.h"
 #include "field/neighbours.h"
@@ -19,7 +20,6 @@
 #include "tests/support/measure.h"
 #include "tests/support/model_maker.h"
 #include "tests/support/prep_case.h"
-#include "tests/support/temp.h"
 #include "tests/support/whole_field.h"
 #include "value/quality.h"
 
@@ -40,11 +40,8 @@ static void write_plant(struct prep_case *c, int sensors, bool gp, struct cad_ra
 {
     struct cad cad = { 0 };
     struct text rows = { 0 };
-    size_t size;
     cad_plate(&cad, random, ACROSS, ACROSS, WIDTH_M, WIDTH_M, 0);
-    char *glb = maker_glb_of(&cad, "plate", &size);
-    temp_write(c->folder, "model.glb", glb, size);
-    mem_free(glb);
+    maker_write_cad(c->folder, "model.glb", "plate", &cad);
     cad_finish(&cad);
     char *yaml = mem_printf("plant: { name: Plate }\n"
                             "assets: [{ id: P, model: model.glb, up: z }]\n"
@@ -93,7 +90,7 @@ static double time_of(struct neighbours_bench *bench, void (*work)(struct neighb
         if (i >= 0)
             ms[i] = measure_ms(CLOCK_PROCESS_CPUTIME_ID) - before_ms;
     }
-    qsort(ms, ROUNDS, sizeof(*ms), by_size);
+    qsort(ms, ROUNDS, sizeof(*ms), compare_doubles);
     return ms[ROUNDS / 2];
 }
 

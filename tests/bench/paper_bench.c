@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "base/clock.h"
+#include "base/math/search.h"
 #include "base/mem.h"
 #include "plant/colormaps.h"
 #include "render/renderer.h"
@@ -356,8 +357,8 @@ static void print_row(const struct paper_bench *bench, const char *name, struct 
 {
     int middle = series->frames / 2, late = series->frames * 95 / 100;
     double columns = series->changes * (double)bench->crowd.plant->tag_count / series->seconds;
-    qsort(series->time_ms, (size_t)series->frames, sizeof(double), by_size);
-    qsort(series->work_ms, (size_t)series->frames, sizeof(double), by_size);
+    qsort(series->time_ms, (size_t)series->frames, sizeof(double), compare_doubles);
+    qsort(series->work_ms, (size_t)series->frames, sizeof(double), compare_doubles);
     printf("{\"name\": \"%s\", \"value\": %.2f, \"p95\": %.2f, \"unit\": \"ms\", ", name, series->time_ms[middle], series->time_ms[late]);
     if (goal_ms > 0)
         printf("\"goal\": [\"<=\", %g], ", goal_ms);

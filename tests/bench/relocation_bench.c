@@ -6,11 +6,11 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/math/search.h"
 #include "base/mem.h"
 #include "scene/manifest.h"
 #include "scene/scene_create.h"
 #include "surface/relocation.h"
-#include "tests/support/measure.h"
 #include "tests/support/sleep.h"
 
 #define ROUNDS 30
@@ -65,7 +65,7 @@ static void measure(struct relocation *relocation, const struct asset_view *view
         if (i >= 0)
             ms[i] = (double)(clock_mono_ns() - began_ns) / NS_PER_MS;
     }
-    qsort(ms, ROUNDS, sizeof(*ms), by_size);
+    qsort(ms, ROUNDS, sizeof(*ms), compare_doubles);
     printf("{\"name\": \"" NAME "\", \"value\": %.1f, \"p95\": %.1f, \"unit\": \"ms\", \"goal\": [\"<=\", 150]}\n", ms[ROUNDS / 2],
            ms[ROUNDS * 95 / 100]);
     mem_free(euclidean_m);

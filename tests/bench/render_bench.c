@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "base/clock.h"
-#include "base/mem.h"
+#include "base/math/search.h"
 #include "tests/support/demo_scene.h"
 #include "tests/support/measure.h"
 #include "tests/support/planned.h"
@@ -19,7 +19,7 @@ enum { MOVING_ROUNDS = 40, STILL_ROUNDS = 8, MOST_ROUNDS = 40 };
 /* Prints the median and the 95th percentile of the values (ms). goal: largest median allowed; 0: no goal. */
 static void print_row(const char *name, double *values, int count, double goal)
 {
-    qsort(values, (size_t)count, sizeof(*values), by_size);
+    qsort(values, (size_t)count, sizeof(*values), compare_doubles);
     printf("{\"name\": \"%s\", \"value\": %.2f, \"p95\": %.2f, \"unit\": \"ms\"", name, values[count / 2], values[count * 95 / 100]);
     if (goal > 0)
         printf(", \"goal\": [\"<=\", %g]", goal);

@@ -5,10 +5,9 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
 
 #include "base/clock.h"
+#include "base/math/search.h"
 #include "encode/encoder.h"
 #include "plant/colormaps.h"
 #include "render/renderer_impl.h"
@@ -33,7 +32,7 @@ static const struct pair_case pairs[] = { { "orbit_1", 1, 0 },    { "orbit_3", 3
 
 static void print_row(const char *name, double *values, int count, const char *unit, double goal)
 {
-    qsort(values, (size_t)count, sizeof(*values), by_size);
+    qsort(values, (size_t)count, sizeof(*values), compare_doubles);
     printf("{\"name\": \"%s\", \"value\": %.3f, \"p95\": %.3f, \"unit\": \"%s\"", name, values[count / 2], values[count * 95 / 100], unit);
     if (goal > 0)
         printf(", \"goal\": [\"<=\", %g]", goal);

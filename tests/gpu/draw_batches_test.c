@@ -205,7 +205,7 @@ TEST(test_a_picture_under_way_keeps_its_readings)
     view_default(&stand.toy->scene, WIDTH_PX, HEIGHT_PX, &view);
     view.tier = TIER_REFINED;
     read_all(&stand, 10);
-    struct frame *want = stand_draw(&stand, &view);
+    struct frame *want = test_frame(stand_draw(&stand, &view));
     struct render_job *job = planned_begin(stand.renderer, &view, stand.snapshot);
     assert_non_null(job);
     renderer_step(stand.renderer, job, 1);
@@ -215,10 +215,8 @@ TEST(test_a_picture_under_way_keeps_its_readings)
         assert_true(count_different(want, other) > RIM_PART * WIDTH_PX * HEIGHT_PX);
         frame_unref(&other);
     }
-    struct frame *got = renderer_end(stand.renderer, &job);
+    struct frame *got = test_frame(renderer_end(stand.renderer, &job));
     assert_true(count_different(want, got) <= RIM_PART * WIDTH_PX * HEIGHT_PX / 4);
-    frame_unref(&want);
-    frame_unref(&got);
     stand_finish(&stand);
 }
 
@@ -233,9 +231,7 @@ static void stand_row(struct stand *stand, int assets)
     toy_add(toy, "BALL", &shape, (double[3]){ 0, 0, 0 }, sensor, 1);
     for (int i = 1; i < assets; i++) {
         double placement[16] = { [0] = 1, [5] = 1, [10] = 1, [12] = 1.4 * (i % 10), [13] = 1.4 * (i / 10), [15] = 1 };
-        char id[24];
-        snprintf(id, sizeof(id), "BALL-%d", i);
-        toy_add_again(toy, id, 0, placement);
+        toy_add_again(toy, test_printf("BALL-%d", i), 0, placement);
     }
     stand_init(stand, &rig, toy);
     renderer_use_gl(stand->renderer, true);

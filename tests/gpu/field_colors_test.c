@@ -16,12 +16,14 @@ enum { CELLS = 12, SIDE_PX = 256, PLATE_TAGS = 3 };
 static const double side_m = 4;
 
 /* Makes a view from above, x to the right, y upwards, with the plate filling the image. */
-static void look_down(struct view *view)
+static struct view look_down(void)
 {
-    view_default(&stand.toy->scene, SIDE_PX, SIDE_PX, view);
-    view->camera = (struct camera){ .eye_m = { side_m / 2, side_m / 2, 10 }, .target_m = { side_m / 2, side_m / 2, 0 }, .up = { 0, 1, 0 } };
-    view->camera.fov_deg = 2 * atan(side_m / 2 / 10) * 180 / M_PI;
-    view->look = LOOK_FLAT;
+    struct view view;
+    view_default(&stand.toy->scene, SIDE_PX, SIDE_PX, &view);
+    view.camera = (struct camera){ .eye_m = { side_m / 2, side_m / 2, 10 }, .target_m = { side_m / 2, side_m / 2, 0 }, .up = { 0, 1, 0 } };
+    view.camera.fov_deg = 2 * atan(side_m / 2 / 10) * 180 / M_PI;
+    view.look = LOOK_FLAT;
+    return view;
 }
 
 static int set_up(void **state)
@@ -99,8 +101,7 @@ static int count_wrong(const struct view *view)
 
 TEST_WITH(test_every_pixel_has_the_legends_color, set_up, stand_tear_down)
 {
-    struct view view;
-    look_down(&view);
+    struct view view = look_down();
     for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++)
         for (int interpolation = INTERPOLATION_SHEPARD; interpolation <= INTERPOLATION_PAPER; interpolation++)
             for (int map = 0; map < (int)colormap_count(NULL); map++) {
@@ -113,8 +114,7 @@ TEST_WITH(test_every_pixel_has_the_legends_color, set_up, stand_tear_down)
 
 TEST_WITH(test_bands, set_up, stand_tear_down)
 {
-    struct view view;
-    look_down(&view);
+    struct view view = look_down();
     for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
         view.tier = (enum tier)tier;
         view.color_scale.break_count = 0;
@@ -128,8 +128,7 @@ TEST_WITH(test_bands, set_up, stand_tear_down)
 
 TEST_WITH(test_logarithmic_scale, set_up, stand_tear_down)
 {
-    struct view view;
-    look_down(&view);
+    struct view view = look_down();
     view.range_min = 1;
     view.color_scale.log = true;
     for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
@@ -142,8 +141,7 @@ TEST_WITH(test_logarithmic_scale, set_up, stand_tear_down)
    */
 TEST_WITH(test_isolines_run_where_the_value_is, set_up, stand_tear_down)
 {
-    struct view view;
-    look_down(&view);
+    struct view view = look_down();
     const struct scalars *scalars = field_scalars(stand.field, 0, &view.field, stand.snapshot);
     memcpy(view.color_scale.lines, (double[]){ 30, 60 }, 2 * sizeof(double));
     view.color_scale.line_count = 2;
@@ -170,8 +168,7 @@ TEST_WITH(test_isolines_run_where_the_value_is, set_up, stand_tear_down)
 /* The number written on an isoline is the field's value there, whether rendered in one step or progressively. */
 TEST_WITH(test_labels_stand_on_their_lines, set_up, stand_tear_down)
 {
-    struct view view;
-    look_down(&view);
+    struct view view = look_down();
     const struct scalars *scalars = field_scalars(stand.field, 0, &view.field, stand.snapshot);
     memcpy(view.color_scale.lines, (double[]){ 30, 60 }, 2 * sizeof(double));
     view.color_scale.line_count = 2;
@@ -199,8 +196,7 @@ TEST_WITH(test_labels_stand_on_their_lines, set_up, stand_tear_down)
 TEST_WITH(test_beyond_the_range_has_its_own_colors, set_up, stand_tear_down)
 {
     const struct colormap *map = colormap_at(NULL, 0);
-    struct view view;
-    look_down(&view);
+    struct view view = look_down();
     view.range_min = 40;
     view.range_max = 60;
     for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
@@ -217,8 +213,7 @@ TEST_WITH(test_beyond_the_range_has_its_own_colors, set_up, stand_tear_down)
 
 TEST_WITH(test_readings_at_the_ends_stay_on_the_map, set_up, stand_tear_down)
 {
-    struct view view;
-    look_down(&view);
+    struct view view = look_down();
     for (int end = 0; end < 2; end++) {
         for (int tag = 0; tag < PLATE_TAGS; tag++)
             toy_set(stand.snapshot, tag, end ? 100 : 0, QUALITY_GOOD);
@@ -232,8 +227,7 @@ TEST_WITH(test_readings_at_the_ends_stay_on_the_map, set_up, stand_tear_down)
 
 TEST_WITH(test_no_data_is_grey_stripes, set_up, stand_tear_down)
 {
-    struct view view;
-    look_down(&view);
+    struct view view = look_down();
     for (int tag = 0; tag < PLATE_TAGS; tag++)
         toy_set(stand.snapshot, tag, 0, QUALITY_BAD_SENSOR_FAILURE);
     for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
@@ -256,21 +250,18 @@ TEST_WITH(test_no_data_is_grey_stripes, set_up, stand_tear_down)
 /* The area around a lost sensor is grey, i.e. shows no value; the other sensors' areas keep their colours. */
 TEST_WITH(test_lost_sensor_leaves_its_place_empty, set_up, stand_tear_down)
 {
-    struct view view;
-    look_down(&view);
+    struct view view = look_down();
     toy_set(stand.snapshot, 2, 95, QUALITY_BAD_SENSOR_FAILURE);
-    struct frame *frame = stand_draw(&stand, &view);
+    struct frame *frame = test_frame(stand_draw(&stand, &view));
     for (int y = 4; y < 40; y++)
         for (int x = SIDE_PX / 2 - 30; x < SIDE_PX / 2 + 30; x++)
             assert_true(is_grey(frame_pixel(frame, x, y)));
     assert_true(map_index_exact(colormap_at(NULL, 0), frame_pixel(frame, 6, SIDE_PX - 7)) >= 0);
-    frame_unref(&frame);
 }
 
 TEST_WITH(test_uncertain_is_stippled, set_up, stand_tear_down)
 {
-    struct view view;
-    look_down(&view);
+    struct view view = look_down();
     for (int tag = 0; tag < PLATE_TAGS; tag++)
         toy_set(stand.snapshot, tag, 50.2, QUALITY_UNCERTAIN_LAST_USABLE);
     for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
@@ -308,8 +299,7 @@ static double part_of_first(int x, int y)
 TEST_WITH(test_the_rim_of_the_uncertain_runs_true, set_up, stand_tear_down)
 {
     const double slack = 0.02;
-    struct view view;
-    look_down(&view);
+    struct view view = look_down();
     toy_set(stand.snapshot, 0, 50.2, QUALITY_UNCERTAIN_LAST_USABLE);
     for (int i = 1; i < PLATE_TAGS; i++)
         toy_set(stand.snapshot, i, 50.2, QUALITY_GOOD);
@@ -372,8 +362,7 @@ static void check_alarms(const struct view *view)
 
 TEST_WITH(test_operator_sees_limits, set_up, stand_tear_down)
 {
-    struct view view;
-    look_down(&view);
+    struct view view = look_down();
     for (int tag = 0; tag < PLATE_TAGS; tag++)
         memcpy(stand.toy->plant.tags[tag].alarms.limits, (double[]){ 0, 20, 70, 90 }, 4 * sizeof(double));
     for (int i = 0; i < LIMIT_COUNT; i++)
@@ -401,8 +390,7 @@ TEST_WITH(test_operator_sees_limits, set_up, stand_tear_down)
 TEST_WITH(test_markers_tell_distances, set_up, stand_tear_down)
 {
     const double want_m[PLATE_TAGS] = { hypot(4, 1), 0, hypot(2, 3) };
-    struct view view;
-    look_down(&view);
+    struct view view = look_down();
     view.camera.eye_m[2] = 14;
     view.field.show = SHOW_DISTANCE;
     view.field.sensor = 1;
@@ -425,9 +413,9 @@ TEST_WITH(test_a_clock_that_is_not_set_is_said, set_up, stand_tear_down)
 {
     struct view view;
     int differ = 0;
-    look_down(&view);
+    view = look_down();
     view.width_px = 800;
-    struct frame *set = stand_draw(&stand, &view), *unset = stand_draw(&stand, &view);
+    struct frame *set = test_frame(stand_draw(&stand, &view)), *unset = test_frame(stand_draw(&stand, &view));
     unset->clock_unset = true;
     overlay_draw(set, &stand.toy->scene, stand.snapshot, NULL);
     overlay_draw(unset, &stand.toy->scene, stand.snapshot, NULL);
@@ -438,8 +426,6 @@ TEST_WITH(test_a_clock_that_is_not_set_is_said, set_up, stand_tear_down)
             assert_true(!differs || y < 50);
         }
     assert_true(differ > 1000);
-    frame_unref(&set);
-    frame_unref(&unset);
 }
 
 /* Once one tag has passed its loop check, markers and legend show which tags have not; the rest of the frame stays the same. */
@@ -456,10 +442,10 @@ TEST_WITH(test_unproven_tags_are_marked, set_up, stand_tear_down)
     for (int i = 0; i < PLATE_TAGS; i++)
         plant->tags[i].source = 0;
     struct loop_checks *loop_checks = loop_checks_open(rig.log, plant, folder, NULL);
-    look_down(&view);
+    view = look_down();
     view.camera.eye_m[2] = 14;
     view.width_px = view.height_px = WIDE_PX;
-    struct frame *plain = stand_draw(&stand, &view), *before = stand_draw(&stand, &view), *begun = stand_draw(&stand, &view);
+    struct frame *plain = test_frame(stand_draw(&stand, &view)), *before = stand_draw(&stand, &view), *begun = stand_draw(&stand, &view);
     overlay_draw(plain, &stand.toy->scene, stand.snapshot, NULL);
     overlay_draw(before, &stand.toy->scene, stand.snapshot, loop_checks);
     /* as long as no tag was checked, the frame is the same as without loop checks: no marker shows whether its tag was checked
@@ -476,7 +462,6 @@ TEST_WITH(test_unproven_tags_are_marked, set_up, stand_tear_down)
             }
     assert_int_equal(differ[0], 0);
     assert_true(differ[1] > 4 && differ[2] > 4);
-    frame_unref(&plain);
     frame_unref(&before);
     frame_unref(&begun);
     loop_checks_close(&loop_checks);
@@ -488,8 +473,7 @@ TEST_WITH(test_unproven_tags_are_marked, set_up, stand_tear_down)
 
 TEST_WITH(test_default_look_keeps_to_the_palette, set_up, stand_tear_down)
 {
-    struct view view;
-    look_down(&view);
+    struct view view = look_down();
     view.look = LOOK_DEFAULT;
     view.ramp_interval = 200; /* bands of 200 units: the whole range is one band of one colour, so pixels may differ in lightness only */
     uint8_t rgb[3], shaded[3];
@@ -531,7 +515,7 @@ TEST_WITH(test_context_has_no_color, set_up, stand_tear_down)
     stand_tear_down(NULL);
     toy_add(toy, "STEEL", &shape, low, NULL, 0);
     stand_init(&stand, &rig, toy);
-    look_down(&view);
+    view = look_down();
     for (int by_gl = 0; by_gl <= 1; by_gl++)
         for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++)
             for (int look = LOOK_DEFAULT; look <= LOOK_FLAT; look++) {

@@ -61,8 +61,7 @@ static int set_up_many(void **state)
     fault = ALL_WELL;
     for (int i = 0; i < PLATES; i++) {
         struct test_shape shape = { 0 };
-        char name[16];
-        snprintf(name, sizeof(name), "P%d", i);
+        char *name = test_printf("P%d", i);
         shape_plate(&shape, TOY_BLUE, (double[3]){ 0, 0, 0 }, (double[3]){ 1.5, 0, 0 }, (double[3]){ 0, 3.5, 0 }, CELLS);
         toy_add(toy, name, &shape, (double[3]){ 2.0 * (i % 2), 4.0 * (i / 2) - 4, 0 }, sensors, 2);
     }
@@ -78,11 +77,13 @@ static int tear_down(void **state)
     return 0;
 }
 
-static void look_down(struct view *view)
+static struct view look_down(void)
 {
-    view_default(&stand.toy->scene, SIDE_PX, SIDE_PX, view);
-    view->camera = (struct camera){ .eye_m = { 2, 2, 10 }, .target_m = { 2, 2, 0 }, .up = { 0, 1, 0 }, .fov_deg = 21 };
-    view->look = LOOK_FLAT;
+    struct view view;
+    view_default(&stand.toy->scene, SIDE_PX, SIDE_PX, &view);
+    view.camera = (struct camera){ .eye_m = { 2, 2, 10 }, .target_m = { 2, 2, 0 }, .up = { 0, 1, 0 }, .fov_deg = 21 };
+    view.look = LOOK_FLAT;
+    return view;
 }
 
 /* Asserts that every pixel within the plate has one of the two greys of the no-data hatching, and that both greys occur. */
@@ -104,8 +105,7 @@ static void assert_hatched(const struct view *view)
 
 TEST_WITH(test_without_memory_there_is_no_data, set_up, tear_down)
 {
-    struct view view;
-    look_down(&view);
+    struct view view = look_down();
     for (int kind = NO_SUMS; kind <= NO_BUFFER; kind++)
         for (int tier = TIER_PREVIEW; tier <= TIER_REFINED; tier++) {
             view.tier = (enum tier)tier;
@@ -126,8 +126,7 @@ TEST_WITH(test_without_memory_there_is_no_data, set_up, tear_down)
 
 TEST_WITH(test_bit_by_bit_too, set_up, tear_down)
 {
-    struct view view;
-    look_down(&view);
+    struct view view = look_down();
     view.tier = TIER_REFINED;
     view.field.power = 9;
     fault = NO_WEIGHTS;
@@ -136,10 +135,9 @@ TEST_WITH(test_bit_by_bit_too, set_up, tear_down)
     assert_non_null(job);
     while (!renderer_step(stand.renderer, job, 1000000)) {
     }
-    struct frame *frame = renderer_end(stand.renderer, &job);
+    struct frame *frame = test_frame(renderer_end(stand.renderer, &job));
     const uint8_t *pixel = frame_pixel(frame, SIDE_PX / 2, SIDE_PX / 2);
     assert_true(is_grey(pixel));
-    frame_unref(&frame);
 }
 
 /* The cache limit is smaller than the fields of one frame. Fields that belong to the same frame must not evict each other or
@@ -151,7 +149,7 @@ TEST_WITH(test_with_little_room_many_are_shown_alike, set_up_many, tear_down)
     struct renderer *frugal = renderer_create(rig.log, rig.gl, &stand.toy->scene, poor);
     assert_non_null(frugal);
     field_set_cache_limit(poor, 1);
-    look_down(&view);
+    view = look_down();
     view.camera.eye_m[2] = 40;
     for (int round = 0; round < 24; round++) {
         view.tier = round % 3 == 2 ? TIER_REFINED : TIER_PREVIEW;
@@ -194,7 +192,7 @@ TEST_WITH(test_what_one_picture_needs_stays, set_up_many, tear_down)
     struct fields *fields = &stand.renderer->fields;
     struct fields_entry *was[PLATES];
     fields->bound_bytes = 1;
-    look_down(&view);
+    view = look_down();
     view.camera.eye_m[2] = 40;
     for (int way = 0; way < 2; way++) {
         view.field.power = 2 + way;

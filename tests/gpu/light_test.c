@@ -3,7 +3,6 @@
 #include "tests/support/test.h"
 #include <unistd.h>
 
-#include "base/clock.h"
 #include "render/light/light.h"
 #include "tests/support/planned.h"
 #include "tests/support/rig.h"
@@ -253,10 +252,10 @@ TEST(test_a_moving_session_does_not_wait)
     struct view view;
     view_default(&stand.toy->scene, 320, 180, &view);
     view.tier = TIER_PREVIEW;
-    struct frame *before = stand_draw(&stand, &view);
+    struct frame *before = test_frame(stand_draw(&stand, &view));
     renderer_set_bake_budget(stand.renderer, 1);
     memcpy(view.light_dir, sun(3).towards, sizeof(view.light_dir));
-    struct frame *first = stand_draw(&stand, &view);
+    struct frame *first = test_frame(stand_draw(&stand, &view));
     assert_true(same_pixels(before, first) && first->content != before->content);
     uint64_t content = first->content;
     int pictures = 1;
@@ -266,14 +265,10 @@ TEST(test_a_moving_session_does_not_wait)
         content = planned_content(stand.renderer, &view, stand.snapshot);
     }
     assert_true(pictures > 3 && pictures < 1000);
-    struct frame *after = stand_draw(&stand, &view);
+    struct frame *after = test_frame(stand_draw(&stand, &view));
     renderer_set_bake_budget(stand.renderer, 0);
-    struct frame *exact = stand_draw(&stand, &view);
+    struct frame *exact = test_frame(stand_draw(&stand, &view));
     assert_true(same_pixels(after, exact) && !same_pixels(after, before));
-    frame_unref(&before);
-    frame_unref(&first);
-    frame_unref(&after);
-    frame_unref(&exact);
 }
 
 /* A preview is drawn before its light is baked; baking continues while no frame is requested. */
@@ -287,16 +282,13 @@ TEST(test_the_first_light_is_rough)
     view_default(&fresh.toy->scene, 320, 180, &view);
     view.tier = TIER_PREVIEW;
     assert_true(renderer_set_bake_budget(fresh.renderer, 1));
-    struct frame *first = stand_draw(&fresh, &view);
+    struct frame *first = test_frame(stand_draw(&fresh, &view));
     int steps = 1;
     while (!renderer_bake_idle(fresh.renderer, 1))
         steps++;
     assert_true(steps > 8 && planned_content(fresh.renderer, &view, fresh.snapshot) != first->content);
-    struct frame *after = stand_draw(&fresh, &view), *exact = stand_draw(&stand, &view);
+    struct frame *after = test_frame(stand_draw(&fresh, &view)), *exact = test_frame(stand_draw(&stand, &view));
     assert_true(same_pixels(after, exact) && !same_pixels(first, exact));
-    frame_unref(&first);
-    frame_unref(&after);
-    frame_unref(&exact);
     stand_finish(&fresh);
 }
 
@@ -310,10 +302,8 @@ TEST(test_a_still_picture_waits_for_its_light)
     int steps = 1;
     for (; !renderer_step(stand.renderer, job, 1); steps++) {
     }
-    struct frame *bits = renderer_end(stand.renderer, &job), *whole = stand_draw(&stand, &view);
+    struct frame *bits = test_frame(renderer_end(stand.renderer, &job)), *whole = test_frame(stand_draw(&stand, &view));
     assert_true(steps > 8 && same_pixels(bits, whole) && bits->content == whole->content);
-    frame_unref(&bits);
-    frame_unref(&whole);
 }
 
 int main(void)

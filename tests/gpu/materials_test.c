@@ -314,7 +314,7 @@ TEST(test_rim_mirrors)
 {
     struct scene_of scene;
     scene_init(&scene, white, (double[3]){ 0, 0, 0 });
-    struct frame *frame = draw_sphere(&scene, 0, from_behind);
+    struct frame *frame = test_frame(draw_sphere(&scene, 0, from_behind));
     const uint8_t *middle = frame_pixel(frame, SIDE_PX / 2, SIDE_PX / 2), *rim = frame_pixel(frame, SIDE_PX * 94 / 100, SIDE_PX / 2);
     double want[3], n[3];
     const double v[3] = { 0, -1, 0 };
@@ -323,7 +323,6 @@ TEST(test_rim_mirrors)
     shown(want);
     print_message("# middle %d (wanted %.1f), rim %d\n", middle[1], want[1], rim[1]);
     assert_true(fabs(middle[1] - want[1]) <= 3 && rim[1] > 2 * middle[1]);
-    frame_unref(&frame);
     scene_finish(&scene);
 }
 

@@ -132,8 +132,7 @@ static struct toy *make_city(double gap_m)
 {
     struct toy *toy = toy_create();
     for (int i = 0; i < ROW * ROW * ROW; i++) {
-        char id[20];
-        snprintf(id, sizeof(id), "cube-%d", i);
+        char *id = test_printf("cube-%d", i);
         add_cube(toy, id, (double[3]){ (1 + gap_m) * (i % ROW), (1 + gap_m) * (i / ROW % ROW), (1 + gap_m) * (i / ROW / ROW) });
     }
     return toy;
@@ -152,9 +151,7 @@ TEST(test_cubes)
             look_anyhow(&stand.toy->scene, &view);
             compare(&tally, stand.renderer, &view, stand.snapshot);
         }
-        char what[32];
-        snprintf(what, sizeof(what), "cubes %g m apart", gap_m);
-        finish(what, &tally, tally.pictures);
+        finish(test_printf("cubes %g m apart", gap_m), &tally, tally.pictures);
         stand_finish(&stand);
     }
 }

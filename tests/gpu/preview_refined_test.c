@@ -4,9 +4,9 @@
 #include "tests/support/test.h"
 
 #include "base/color/lab.h"
+#include "base/math/search.h"
 #include "render/split_view.h"
 #include "scene/framing.h"
-#include "tests/support/measure.h"
 #include "tests/support/no_textures.h"
 #include "tests/support/site.h"
 #include "tests/support/rig_case.h"
@@ -114,7 +114,7 @@ static struct flash flash_of(struct site *site, struct view *view)
             square += (lab[0][c] - lab[1][c]) * (lab[0][c] - lab[1][c]);
         sum += errors[i] = sqrt(square);
     }
-    qsort(errors, (size_t)count, sizeof(*errors), by_size);
+    qsort(errors, (size_t)count, sizeof(*errors), compare_doubles);
     struct flash flash = { sum / count, errors[count * 95 / 100] };
     mem_free(errors);
     frame_unref(&frames[0]);

@@ -30,9 +30,8 @@ static uint64_t content(void)
 TEST_WITH(test_content_is_that_of_the_frame, reset, NULL)
 {
     uint64_t before = content();
-    struct frame *frame = stand_draw(&stand, &view);
+    struct frame *frame = test_frame(stand_draw(&stand, &view));
     assert_true(frame->content == before && before == content());
-    frame_unref(&frame);
 }
 
 /* In a split view two frames are planned before the first is drawn: the first plan must stay valid. */
@@ -40,19 +39,17 @@ TEST_WITH(test_plan_holds_while_another_is_made, reset, NULL)
 {
     view.camera.eye_m[1] += 0.3; /* moves the camera, so that neither frame can reuse what was drawn before */
     struct view other = view;
-    struct frame *want = stand_draw(&stand, &view);
+    struct frame *want = test_frame(stand_draw(&stand, &view));
     other.camera.eye_m[0] += 1;
     other.range_max *= 2;
     struct frame_plan *plan = planned(stand.renderer, &view, stand.snapshot);
     struct frame_plan *next = planned(stand.renderer, &other, stand.snapshot);
     assert_true(plan->content == want->content && next->content != want->content && plan->shape != next->shape);
-    struct frame *got = renderer_draw(stand.renderer, plan);
+    struct frame *got = test_frame(renderer_draw(stand.renderer, plan));
     assert_true(got && got->content == want->content);
     assert_memory_equal(got->bgrx, want->bgrx, (size_t)want->stride_bytes * (size_t)want->height_px);
     frame_plan_destroy(&plan);
     frame_plan_destroy(&next);
-    frame_unref(&want);
-    frame_unref(&got);
 }
 
 TEST_WITH(test_content_ignores_numbers_and_times, reset, NULL)
@@ -125,26 +122,22 @@ TEST_WITH(test_content_is_the_same_elsewhere, reset, NULL)
     for (int i = 0; i < 8; i++)
         toy_set(other.snapshot, i, 20 + 7 * i, QUALITY_GOOD);
     assert_true(planned_content(other.renderer, &view, other.snapshot) == content());
-    struct frame *here = stand_draw(&stand, &view), *there = stand_draw(&other, &view);
+    struct frame *here = test_frame(stand_draw(&stand, &view)), *there = test_frame(stand_draw(&other, &view));
     assert_memory_equal(here->bgrx, there->bgrx, (size_t)here->stride_bytes * (size_t)here->height_px);
-    frame_unref(&here);
-    frame_unref(&there);
     stand_finish(&other);
 }
 
 TEST_WITH(test_what_is_out_of_sight_costs_nothing, reset, NULL)
 {
-    struct frame *all = stand_draw(&stand, &view);
+    struct frame *all = test_frame(stand_draw(&stand, &view));
     memcpy(view.camera.target_m, (double[3]){ 4.2, 1.2, 50 }, sizeof(view.camera.target_m));
     memcpy(view.camera.eye_m, (double[3]){ 4.2, -1.2, 20 }, sizeof(view.camera.eye_m));
-    struct frame *none = stand_draw(&stand, &view);
+    struct frame *none = test_frame(stand_draw(&stand, &view));
     assert_true(all->triangles > 20000);
     assert_int_equal(none->triangles, 0);
     uint64_t before = content();
     toy_set(stand.snapshot, 2, 90, QUALITY_GOOD);
     assert_true(content() == before);
-    frame_unref(&all);
-    frame_unref(&none);
 }
 
 static void assert_same_picture(const struct frame *a, const struct frame *b)
@@ -216,7 +209,7 @@ TEST_WITH(test_bit_by_bit_is_the_same_picture, reset, NULL)
 TEST_WITH(test_abandoned_picture_leaves_no_trace, reset, NULL)
 {
     view.tier = TIER_REFINED;
-    struct frame *before = stand_draw(&stand, &view);
+    struct frame *before = test_frame(stand_draw(&stand, &view));
     for (int i = 0; i < 20; i++) {
         struct render_job *job = planned_begin(stand.renderer, &view, stand.snapshot);
         assert_non_null(job);
@@ -225,10 +218,8 @@ TEST_WITH(test_abandoned_picture_leaves_no_trace, reset, NULL)
         renderer_abandon(stand.renderer, &job);
         assert_null(job);
     }
-    struct frame *after = stand_draw(&stand, &view);
+    struct frame *after = test_frame(stand_draw(&stand, &view));
     assert_same_picture(before, after);
-    frame_unref(&before);
-    frame_unref(&after);
 }
 
 /* Returns the marker of tag 5, the tank's first sensor, which is at (3.5, 0.5, 0.6) and faces south-west; NULL if there is
@@ -275,10 +266,9 @@ TEST_WITH(test_marker_upward_is_upward, reset, NULL)
 {
     const double *at = stand.toy->scene.assets[1].sensors[0].surface_m;
     look(at[0] - 2, at[1] - 2, at[2] - 0.5, at[0], at[1], at[2] - 0.5);
-    struct frame *frame = stand_draw(&stand, &view);
+    struct frame *frame = test_frame(stand_draw(&stand, &view));
     double expected = 90 - 0.5 / (sqrt(8) * tan(22.5 * M_PI / 180)) * 90;
     assert_true(fabs(tank_marker(frame)->y_px - expected) < 0.6);
-    frame_unref(&frame);
 }
 
 TEST_WITH(test_age_of_the_oldest, reset, NULL)
@@ -415,7 +405,7 @@ TEST_WITH(test_what_is_kept_can_be_had_anew, reset, NULL)
     /* incremental updates by earlier tests have left rounding errors in the field's sums: begins with empty caches */
     renderer_drop_caches(stand.renderer);
     field_clear_cache(stand.field);
-    struct frame *before = stand_draw(&stand, &seen);
+    struct frame *before = test_frame(stand_draw(&stand, &seen));
     draw_much();
     size_t full = caches();
     renderer_drop_caches(stand.renderer);
@@ -426,11 +416,9 @@ TEST_WITH(test_what_is_kept_can_be_had_anew, reset, NULL)
     assert_true(bytes[STORE_MODELS] > 0 && bytes[STORE_FIELDS] == 0 && bytes[STORE_PICTURES] == 0 && bytes[STORE_TARGETS] == 0 &&
                 bytes[STORE_ROOM] == 0);
     assert_true(caches() < full);
-    struct frame *after = stand_draw(&stand, &seen);
+    struct frame *after = test_frame(stand_draw(&stand, &seen));
     assert_true(before->content == after->content);
     assert_memory_equal(before->bgrx, after->bgrx, (size_t)before->stride_bytes * (size_t)before->height_px);
-    frame_unref(&before);
-    frame_unref(&after);
 }
 
 /* The memory of the renderer's caches is bounded. Lighting is excluded: two sets always exist, one displayed and one being baked. */

@@ -117,17 +117,11 @@ static int add_mesh(struct model_maker *maker, const struct wavy_sheet *s, enum 
 
 static void write_model(const char *folder, enum way way)
 {
-    struct wavy_sheet sheet;
+    struct wavy_sheet sheet = sheet_create(32, 16);
     struct model_maker maker;
-    size_t size;
-    sheet_init(&sheet, 32, 16);
     maker_init(&maker);
     maker_node(&maker, "sheet", add_mesh(&maker, &sheet, way), NULL);
-    char *glb = maker_glb(&maker, &size);
-    temp_write(folder, "sheet.glb", glb, size);
-    mem_free(glb);
-    maker_finish(&maker);
-    sheet_finish(&sheet);
+    maker_write(&maker, folder, "sheet.glb");
 }
 
 /* --- its picture ----------------------------------------------------------------------------------------------------------------- */

@@ -4,8 +4,8 @@
 
 #include <turbojpeg.h>
 
+#include "base/math/search.h"
 #include "encode/encoder.h"
-#include "tests/support/measure.h"
 #include "tests/support/stand_case.h"
 #include "value/quality.h"
 
@@ -86,7 +86,7 @@ static double misread(const struct colormap *map, const struct frame *truth, con
                 errors[count++] = abs(map_index_nearest(map, frame_pixel(shaded, x, y), deuteranope) - place) / 2.56;
         }
     assert_true(count > WIDTH * HEIGHT / 500);
-    qsort(errors, (size_t)count, sizeof(*errors), by_size);
+    qsort(errors, (size_t)count, sizeof(*errors), compare_doubles);
     p95 = errors[count * 95 / 100];
     mem_free(errors);
     return p95;
@@ -188,9 +188,9 @@ TEST_WITH(test_tiers_agree, set_up, stand_tear_down)
     int count = 0, far = 0;
     view_default(&stand.toy->scene, WIDTH, HEIGHT, &view);
     view.tier = TIER_REFINED;
-    struct frame *still = stand_draw(&stand, &view);
+    struct frame *still = test_frame(stand_draw(&stand, &view));
     view.tier = TIER_PREVIEW;
-    struct frame *moving = stand_draw(&stand, &view);
+    struct frame *moving = test_frame(stand_draw(&stand, &view));
     for (int y = 0; y < HEIGHT; y++)
         for (int x = 0; x < WIDTH; x++, count++) {
             int difference = frame_pixel(still, x, y)[1] - frame_pixel(moving, x, y)[1];
@@ -200,8 +200,6 @@ TEST_WITH(test_tiers_agree, set_up, stand_tear_down)
     printf("# still - moving: mean %.2f of 255, %.1f %% differ by more than 24\n", sum / count, 100.0 * far / count);
     assert_true(fabs(sum / count) < 2);
     assert_true(far < count * 6 / 100);
-    frame_unref(&still);
-    frame_unref(&moving);
 }
 
 /* The operator's view is grey while all readings are within their limits: every pixel that differs from the view of values,

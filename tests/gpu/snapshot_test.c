@@ -29,9 +29,8 @@ static int snapshot(const char *args)
 static bool said(const char *text)
 {
     size_t bytes;
-    char *path = test_printf("%s/said", folder), *all = text_read_file(path, 1 << 20, &bytes);
+    char *path = test_printf("%s/said", folder), *all = test_memory(text_read_file(path, 1 << 20, &bytes));
     bool found = all && strstr(all, text);
-    mem_free(all);
     return found;
 }
 
@@ -62,22 +61,19 @@ static void link_demo(const char *name)
    the whole plant. */
 static void write_plant(void)
 {
-    char *text = read_demo("plant.yaml"), *list = read_demo("tags.csv"), *rest = NULL;
-    struct text tags = { 0 };
+    char *text = test_memory(read_demo("plant.yaml")), *list = test_memory(read_demo("tags.csv")), *rest = NULL;
+    struct text *tags = test_text();
     assert_true(text && list);
     char *second = strstr(text, "\n  - { id: E-102,");
     assert_non_null(second);
     second[1] = '\0';
     for (char *line = strtok_r(list, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest))
-        if (tags.length == 0 || strstr(line, ",E-101,"))
-            text_add(&tags, "%s\n", line);
+        if (tags->length == 0 || strstr(line, ",E-101,"))
+            text_add(tags, "%s\n", line);
     plant = temp_write_text(folder, "plant.yaml", text);
-    temp_write_text(folder, "tags.csv", tags.at);
+    temp_write_text(folder, "tags.csv", tags->at);
     link_demo("plant.glb");
     link_demo("plant.prepared");
-    text_finish(&tags);
-    mem_free(text);
-    mem_free(list);
 }
 
 static void write_values(const char *text)

@@ -77,9 +77,8 @@ TEST(test_nothing_in_sight)
     struct render_job *first = planned_begin(stand.renderer, &view, stand.snapshot);
     assert_non_null(first);
     soft_assert_like_gl(&stand, &view, 0);
-    struct frame *frame = renderer_end(stand.renderer, &first);
+    struct frame *frame = test_frame(renderer_end(stand.renderer, &first));
     assert_non_null(frame);
-    frame_unref(&frame);
 }
 
 /* A sliver is a very thin triangle. The centre of a pixel that shows one may lie outside it; the shadow there must be that of
@@ -145,7 +144,7 @@ TEST(test_readings_change_between_steps)
     view.field.distance = DISTANCE_EUCLIDEAN;
     moving = view;
     moving.tier = TIER_PREVIEW;
-    struct frame *expected = soft_draw_anew(&stand, &view);
+    struct frame *expected = test_frame(soft_draw_anew(&stand, &view));
     for (int steps = 0; !done; steps++) {
         struct render_job *job = planned_begin(stand.renderer, &view, stand.snapshot);
         assert_non_null(job);
@@ -162,7 +161,6 @@ TEST(test_readings_change_between_steps)
         frame_unref(&frame);
         toy_fill(stand.snapshot, 0);
     }
-    frame_unref(&expected);
 }
 
 /* --- reuse ----------------------------------------------------------------------------------------------------------------------- */
@@ -194,7 +192,7 @@ TEST(test_new_readings_are_a_new_picture)
 {
     struct view view = soft_view(&stand, TIER_REFINED, 501, 300);
     view.selected_asset = 0;
-    struct frame *first = soft_draw_anew(&stand, &view);
+    struct frame *first = test_frame(soft_draw_anew(&stand, &view));
     toy_set(stand.snapshot, 0, 75, QUALITY_GOOD);
     toy_set(stand.snapshot, 3, 20, QUALITY_GOOD);
     assert_same_anew(&view);
@@ -205,10 +203,8 @@ TEST(test_new_readings_are_a_new_picture)
         toy_set(stand.snapshot, i, 50, QUALITY_BAD_SENSOR_FAILURE);
     assert_same_anew(&view);
     toy_fill(stand.snapshot, 0);
-    struct frame *last = stand_draw(&stand, &view);
+    struct frame *last = test_frame(stand_draw(&stand, &view));
     assert_memory_equal(first->bgrx, last->bgrx, (size_t)first->height_px * (size_t)first->stride_bytes);
-    frame_unref(&first);
-    frame_unref(&last);
 }
 
 /* When readings change, a refined frame is recoloured instead of drawn again. With isolines, their labels, a ghost and a
@@ -219,9 +215,8 @@ TEST(test_lines_again)
     soft_lines_every(&view, 10);
     asset_set_add(&view.visibility.ghosts, 2);
     soft_cut_at(&view, 0, 0, 0, -1, 1.2);
-    struct frame *first = soft_draw_anew(&stand, &view);
+    struct frame *first = test_frame(soft_draw_anew(&stand, &view));
     assert_true(first->label_count > 0);
-    frame_unref(&first);
     toy_set(stand.snapshot, 0, 75, QUALITY_GOOD);
     toy_set(stand.snapshot, 3, 20, QUALITY_UNCERTAIN_LAST_USABLE);
     assert_same_anew(&view);
@@ -268,8 +263,7 @@ TEST(test_glossy_again)
 TEST(test_new_colors_too)
 {
     struct view view = soft_view(&stand, TIER_REFINED, 300, 200);
-    struct frame *frame = soft_draw_anew(&stand, &view);
-    frame_unref(&frame);
+    test_frame(soft_draw_anew(&stand, &view));
     view.colormap = (int)colormap_count(NULL) - 1;
     view.range_min = 30;
     view.range_max = 70;
@@ -286,8 +280,7 @@ TEST(test_what_else_changes_is_drawn)
 {
     struct view view, other;
     view = soft_view(&stand, TIER_REFINED, 300, 200);
-    struct frame *frame = soft_draw_anew(&stand, &view);
-    frame_unref(&frame);
+    test_frame(soft_draw_anew(&stand, &view));
     assert_true(is_quick(&view));
     other = view;
     other.camera.eye_m[0] += 0.01;

@@ -7,7 +7,6 @@
 #include "render/renderer_impl.h"
 #include "tests/support/soft_case.h"
 #include "tests/support/whole_field.h"
-#include "value/quality.h"
 
 static struct rig rig;
 static struct stand stand;
@@ -123,12 +122,10 @@ TEST(test_outlines)
         soft_assert_like_gl(&stand, &view, i % 2 ? 0.012 : 0.02);
     }
     asset_set_add(&view.visibility.hidden, view.selected_asset);
-    struct frame *hidden = stand_draw(&stand, &view);
+    struct frame *hidden = test_frame(stand_draw(&stand, &view));
     view.selected_asset = -1;
-    struct frame *plain = stand_draw(&stand, &view);
+    struct frame *plain = test_frame(stand_draw(&stand, &view));
     assert_memory_equal(hidden->bgrx, plain->bgrx, (size_t)hidden->height_px * (size_t)hidden->stride_bytes);
-    frame_unref(&hidden);
-    frame_unref(&plain);
 }
 
 TEST(test_hidden_assets)

@@ -147,12 +147,11 @@ TEST_WITH(test_what_is_not_split_stays_as_it_is, set_up, stand_tear_down)
 {
     struct view view;
     view_default(&stand.toy->scene, WIDTH, HEIGHT, &view);
-    struct frame *whole = split_view_draw_now(stand.renderer, &view, stand.snapshot), *plain = stand_draw(&stand, &view);
+    struct frame *whole = test_frame(split_view_draw_now(stand.renderer, &view, stand.snapshot)), *plain = stand_draw(&stand, &view);
     assert_memory_equal(whole->bgrx, plain->bgrx, (size_t)HEIGHT * (size_t)whole->stride_bytes);
     assert_true(whole->content == plain->content && planned_content(stand.renderer, &view, stand.snapshot) == plain->content);
     struct view split;
     make_view(&split);
     assert_true(planned_content(stand.renderer, &split, stand.snapshot) != plain->content);
-    frame_unref(&whole);
     frame_unref(&plain);
 }

@@ -87,9 +87,8 @@ TEST_WITH(test_hidden_and_isolated, reset, NULL)
     assert_looks(0, 2000, 3);
     asset_set_add(&view.visibility.hidden, TANK);
     assert_looks(0, 0, 0);
-    struct frame *frame = stand_draw(&stand, &view);
+    struct frame *frame = test_frame(stand_draw(&stand, &view));
     assert_int_equal(frame->triangles, 0);
-    frame_unref(&frame);
 }
 
 TEST_WITH(test_what_is_hidden_has_no_age, reset, NULL)
@@ -97,9 +96,8 @@ TEST_WITH(test_what_is_hidden_has_no_age, reset, NULL)
     for (int i = 5; i < 8; i++)
         stand.snapshot->readings[i].age_ns = 9000000000;
     asset_set_add(&view.visibility.hidden, TANK);
-    struct frame *frame = stand_draw(&stand, &view);
+    struct frame *frame = test_frame(stand_draw(&stand, &view));
     assert_true(frame->oldest_age_ns == 1000000000);
-    frame_unref(&frame);
 }
 
 static uint64_t content(void)
@@ -126,12 +124,10 @@ TEST_WITH(test_content_sees_what_is_shown, reset, NULL)
     view.visibility.isolated = (struct asset_set){ 0 };
     for (int i = 0; i < 5; i++) /* isolating all five assets must give the same frame as isolating none */
         asset_set_add(&view.visibility.isolated, i);
-    struct frame *all = stand_draw(&stand, &view);
+    struct frame *all = test_frame(stand_draw(&stand, &view));
     view.visibility = (struct visibility){ 0 };
-    struct frame *none = stand_draw(&stand, &view);
+    struct frame *none = test_frame(stand_draw(&stand, &view));
     assert_int_equal(all->triangles, none->triangles);
-    frame_unref(&all);
-    frame_unref(&none);
 }
 
 /* The tank stands in front of the exchanger's end. Seen through the ghosted tank, that end must have the same colours as with a
@@ -167,30 +163,25 @@ TEST_WITH(test_a_steep_ghost_is_seen_through, reset, NULL)
 {
     view.camera = (struct camera){ .eye_m = { -8, -1, 1.5 }, .target_m = { 0, 0.5, 0 }, .up = { 0, 0, 1 }, .fov_deg = 30 };
     asset_set_add(&view.visibility.isolated, SLAB);
-    struct frame *solid = stand_draw(&stand, &view);
+    struct frame *solid = test_frame(stand_draw(&stand, &view));
     asset_set_add(&view.visibility.hidden, SLAB);
-    struct frame *hidden = stand_draw(&stand, &view);
+    struct frame *hidden = test_frame(stand_draw(&stand, &view));
     view.visibility = (struct visibility){ 0 };
     asset_set_add(&view.visibility.ghosts, SLAB);
     asset_set_add(&view.visibility.isolated, SLAB);
-    struct frame *ghost = stand_draw(&stand, &view);
+    struct frame *ghost = test_frame(stand_draw(&stand, &view));
     int covered = count_farther(solid, hidden, 8), changed = count_farther(ghost, hidden, 8);
     assert_true(covered > 5000);
     assert_true(changed > 0.02 * covered && changed < 0.2 * covered);
-    frame_unref(&solid);
-    frame_unref(&hidden);
-    frame_unref(&ghost);
 }
 
 TEST_WITH(test_a_ghost_behind_something_is_not_seen, reset, NULL)
 {
     view.camera = (struct camera){ .eye_m = { -12, 0, 1.2 }, .target_m = { 0, 0, 1.2 }, .up = { 0, 0, 1 }, .fov_deg = 4 };
-    struct frame *solid = stand_draw(&stand, &view);
+    struct frame *solid = test_frame(stand_draw(&stand, &view));
     asset_set_add(&view.visibility.ghosts, PUMP);
-    struct frame *ghost = stand_draw(&stand, &view);
+    struct frame *ghost = test_frame(stand_draw(&stand, &view));
     assert_int_equal(count_different(solid, ghost), 0);
-    frame_unref(&solid);
-    frame_unref(&ghost);
 }
 
 static bool is_neutral(const uint8_t *bgrx)
@@ -314,21 +305,18 @@ TEST_WITH(test_a_cut_closes_bodies, reset, NULL)
 TEST_WITH(test_a_cut_leaves_the_rest_alone, reset, NULL)
 {
     view.visibility.clip = (struct clip){ .plane_count = 1, .planes = { { -1, 0, 0, 50 } } };
-    struct frame *uncut = stand_draw(&stand, &view);
+    struct frame *uncut = test_frame(stand_draw(&stand, &view));
     view.visibility.clip = (struct clip){ .plane_count = 1, .planes = { { -1, 0, 0, 2.6 } } }; /* this plane removes the tank */
-    struct frame *cut = stand_draw(&stand, &view);
+    struct frame *cut = test_frame(stand_draw(&stand, &view));
     assert_true(count_value(uncut, 80) > 2000);
     assert_int_equal(count_value(cut, 80), 0);
     assert_true(count_value(cut, 30) >= count_value(uncut, 30));
     assert_int_equal(cut->marker_count, 5);
     assert_true(cut->triangles < uncut->triangles);
     clip_box(&view.visibility.clip, (double[3]){ 2.9, -9, -9 }, (double[3]){ 9, 9, 9 }); /* only the tank stays */
-    struct frame *box = stand_draw(&stand, &view);
+    struct frame *box = test_frame(stand_draw(&stand, &view));
     assert_int_equal(count_value(box, 30), 0);
     assert_true(count_value(box, 80) >= count_value(uncut, 80));
-    frame_unref(&uncut);
-    frame_unref(&cut);
-    frame_unref(&box);
 }
 
 /* Progressive rendering of a section with ghosts gives the same frame. */
@@ -337,14 +325,12 @@ TEST_WITH(test_bit_by_bit_is_the_same, reset, NULL)
     view.tier = TIER_REFINED;
     asset_set_add(&view.visibility.ghosts, TANK);
     view.visibility.clip = (struct clip){ .plane_count = 1, .planes = { { 0, 1, 0, 0.1 } } };
-    struct frame *at_once = stand_draw(&stand, &view);
+    struct frame *at_once = test_frame(stand_draw(&stand, &view));
     struct render_job *job = planned_begin(stand.renderer, &view, stand.snapshot);
     while (!renderer_step(stand.renderer, job, 1))
         continue;
-    struct frame *bits = renderer_end(stand.renderer, &job);
+    struct frame *bits = test_frame(renderer_end(stand.renderer, &job));
     assert_memory_equal(at_once->bgrx, bits->bgrx, (size_t)bits->stride_bytes * (size_t)bits->height_px);
-    frame_unref(&at_once);
-    frame_unref(&bits);
 }
 
 /* In an orthographic view a metre spans the same number of pixels everywhere, and nearer objects still hide farther ones. */

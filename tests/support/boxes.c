@@ -2,9 +2,6 @@
 /* Writes models of boxes as glTF. */
 #include "tests/support/boxes.h"
 
-#include "base/mem.h"
-#include "tests/support/temp.h"
-
 int boxes_add(struct model_maker *maker, const char *node, const double low[3], const double high[3])
 {
     static const uint16_t corners[36] = { 0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
@@ -25,14 +22,4 @@ void boxes_add_primitive(struct model_maker *maker, int mesh, int mode, const fl
     int positions = maker_numbers(maker, corners, count * sizeof(*corners), FLOAT, count, "VEC3");
     json_array_append_new(json_object_get(maker_get(maker, "meshes", mesh), "primitives"),
                           json_pack("{s:{s:i},s:i}", "attributes", "POSITION", positions, "mode", mode));
-}
-
-void boxes_write(struct model_maker *maker, const char *folder, const char *name)
-{
-    size_t size;
-    char *glb = maker_glb(maker, &size);
-    temp_write(folder, name, glb, size);
-    mem_free(glb);
-    maker_finish(maker);
-    maker_init(maker);
 }

@@ -10,7 +10,5 @@ int boxes_add(struct model_maker *maker, const char *node, const double low[3], 
 /* Adds a primitive with these vertices to a mesh. mode: glTF's number of the kind of primitive (0 points, 1 lines, 4
    triangles). */
 void boxes_add_primitive(struct model_maker *maker, int mesh, int mode, const float (*corners)[3], size_t count);
-/* Writes the model to FOLDER/NAME; the maker is empty afterwards. */
-void boxes_write(struct model_maker *maker, const char *folder, const char *name);
 
 #endif

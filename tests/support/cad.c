@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "tests/support/owned.h"
 #include "tests/support/sweep.h"
 
 #define PI 3.14159265358979323846
@@ -32,6 +33,19 @@ void cad_finish(struct cad *cad)
     mem_free(cad->positions);
     mem_free(cad->triangles);
     *cad = (struct cad){ 0 };
+}
+
+static void release_cad(void *resource)
+{
+    cad_finish(resource);
+    mem_free(resource);
+}
+
+struct cad *test_cad(void)
+{
+    struct cad *cad = mem_new(sizeof(*cad));
+    owned_add(release_cad, cad);
+    return cad;
 }
 
 static uint32_t add_vertex(struct cad *cad, double x, double y, double z)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Times and sorting for benchmarks and tests. Call from any thread. */
+/* Times for benchmarks. Call from any thread. */
 #ifndef TESTS_SUPPORT_MEASURE_H
 #define TESTS_SUPPORT_MEASURE_H
 #include <time.h>
@@ -10,13 +10,6 @@ static inline double measure_ms(clockid_t clock)
     struct timespec now;
     clock_gettime(clock, &now);
     return (double)now.tv_sec * 1e3 + (double)now.tv_nsec / 1e6;
-}
-
-/* Compares doubles for qsort, smallest first. */
-static inline int by_size(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
 }
 
 #endif

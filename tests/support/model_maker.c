@@ -7,6 +7,7 @@
 
 #include "base/mem.h"
 #include "tests/support/glb.h"
+#include "tests/support/temp.h"
 
 void maker_init(struct model_maker *maker)
 {
@@ -127,15 +128,33 @@ char *maker_data_uri(const char *kind, const void *bytes, size_t count)
     return text.at;
 }
 
-char *maker_glb_of(const struct cad *cad, const char *node, size_t *size)
+int maker_triangles(struct model_maker *maker, const float (*positions)[3], size_t vertex_count, const uint32_t *indices,
+                    size_t index_count)
+{
+    int at = maker_numbers(maker, positions, vertex_count * sizeof(*positions), FLOAT, vertex_count, "VEC3");
+    int list = maker_numbers(maker, indices, index_count * sizeof(*indices), UINT, index_count, "SCALAR");
+    return maker_mesh(maker, json_pack("{s:{s:i},s:i}", "attributes", "POSITION", at, "indices", list));
+}
+
+void maker_cad(struct model_maker *maker, const char *node, const struct cad *cad)
+{
+    int mesh = maker_triangles(maker, (const float(*)[3])cad->positions, cad->vertex_count, cad->triangles, 3 * cad->triangle_count);
+    maker_node(maker, node, mesh, NULL);
+}
+
+void maker_write(struct model_maker *maker, const char *folder, const char *name)
+{
+    size_t size;
+    char *glb = maker_glb(maker, &size);
+    temp_write(folder, name, glb, size);
+    mem_free(glb);
+    maker_finish(maker);
+}
+
+void maker_write_cad(const char *folder, const char *name, const char *node, const struct cad *cad)
 {
     struct model_maker maker;
     maker_init(&maker);
-    int positions = maker_numbers(&maker, cad->positions, cad->vertex_count * sizeof(*cad->positions), FLOAT, cad->vertex_count, "VEC3");
-    int indices =
-        maker_numbers(&maker, cad->triangles, cad->triangle_count * 3 * sizeof(*cad->triangles), UINT, cad->triangle_count * 3, "SCALAR");
-    maker_node(&maker, node, maker_mesh(&maker, json_pack("{s:{s:i},s:i}", "attributes", "POSITION", positions, "indices", indices)), NULL);
-    char *glb = maker_glb(&maker, size);
-    maker_finish(&maker);
-    return glb;
+    maker_cad(&maker, node, cad);
+    maker_write(&maker, folder, name);
 }

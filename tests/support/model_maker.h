@@ -3,7 +3,6 @@
 #ifndef TESTS_MODEL_MAKER_H
 #define TESTS_MODEL_MAKER_H
 #include <jansson.h>
-#include <stdint.h>
 
 #include "base/text/text.h"
 #include "tests/support/cad.h"
@@ -26,16 +25,23 @@ int maker_accessor(struct model_maker *maker, int view, int component_type, size
 int maker_numbers(struct model_maker *maker, const void *bytes, size_t size, int component_type, size_t count,
                   const char *type); /* appends a buffer view over these bytes and an accessor for the view */
 int maker_mesh(struct model_maker *maker, json_t *primitive);
+/* appends a mesh of one primitive: triangles */
+int maker_triangles(struct model_maker *maker, const float (*positions)[3], size_t vertex_count, const uint32_t *indices,
+                    size_t index_count);
 int maker_node(struct model_maker *maker, const char *name, int mesh, json_t *more); /* a root node; more: further properties, or NULL */
+void maker_cad(struct model_maker *maker, const char *node, const struct cad *cad); /* appends a root node that has this shape */
 void maker_require(struct model_maker *maker, const char *extension);
 json_t *maker_get(struct model_maker *maker, const char *list, int number);
 
 /* maker_glb() returns the model as a GLB file; maker_gltf() returns it as JSON whose buffer is a data URI. The caller frees
    both with mem_free(). */
 char *maker_glb(struct model_maker *maker, size_t *size);
-/* Returns a GLB file with one node that has this mesh; free with mem_free. */
-char *maker_glb_of(const struct cad *cad, const char *node, size_t *size);
 char *maker_gltf(struct model_maker *maker, size_t *size);
 char *maker_data_uri(const char *kind, const void *bytes, size_t count);
+
+/* Writes the model to FOLDER/NAME as a GLB, and finishes the maker. */
+void maker_write(struct model_maker *maker, const char *folder, const char *name);
+/* Writes a model of one node that has this shape. */
+void maker_write_cad(const char *folder, const char *name, const char *node, const struct cad *cad);
 
 #endif

@@ -10,38 +10,38 @@
 #include "base/mem.h"
 #include "tests/support/draco_encode.h"
 #include "tests/support/model_maker.h"
+#include "tests/support/owned.h"
 
-void sheet_init(struct wavy_sheet *s, uint32_t across, uint32_t up)
+static void *owned_array(size_t count, size_t size)
 {
-    *s = (struct wavy_sheet){ .across = across, .up = up, .vertex_count = (across + 1) * (up + 1), .index_count = across * up * 6 };
-    s->positions = mem_array(s->vertex_count, sizeof(*s->positions));
-    s->normals = mem_array(s->vertex_count, sizeof(*s->normals));
-    s->texcoords = mem_array(s->vertex_count, sizeof(*s->texcoords));
-    s->colors = mem_array(s->vertex_count, sizeof(*s->colors));
-    s->indices = mem_array(s->index_count, sizeof(*s->indices));
-    for (uint32_t v = 0; v < s->vertex_count; v++) {
+    void *array = mem_array(count, size);
+    owned_add(mem_free, array);
+    return array;
+}
+
+struct wavy_sheet sheet_create(uint32_t across, uint32_t up)
+{
+    struct wavy_sheet s = { .across = across, .up = up, .vertex_count = (across + 1) * (up + 1), .index_count = across * up * 6 };
+    s.positions = owned_array(s.vertex_count, sizeof(*s.positions));
+    s.normals = owned_array(s.vertex_count, sizeof(*s.normals));
+    s.texcoords = owned_array(s.vertex_count, sizeof(*s.texcoords));
+    s.colors = owned_array(s.vertex_count, sizeof(*s.colors));
+    s.indices = owned_array(s.index_count, sizeof(*s.indices));
+    for (uint32_t v = 0; v < s.vertex_count; v++) {
         float x = 2 * (float)(v % (across + 1)) / (float)across, y = (float)(v / (across + 1)) / (float)up;
         float slope = -0.3f * sinf(3 * x), length = sqrtf(1 + slope * slope);
-        memcpy(s->positions[v], (float[3]){ x, y, 0.1f * cosf(3 * x) }, sizeof(*s->positions));
-        memcpy(s->normals[v], (float[3]){ -slope / length, 0, 1 / length }, sizeof(*s->normals));
-        memcpy(s->texcoords[v], (float[2]){ x / 2, y }, sizeof(*s->texcoords));
-        memcpy(s->colors[v], (uint8_t[4]){ (uint8_t)(127 * x), (uint8_t)(255 * y), 7, 255 }, sizeof(*s->colors));
+        memcpy(s.positions[v], (float[3]){ x, y, 0.1f * cosf(3 * x) }, sizeof(*s.positions));
+        memcpy(s.normals[v], (float[3]){ -slope / length, 0, 1 / length }, sizeof(*s.normals));
+        memcpy(s.texcoords[v], (float[2]){ x / 2, y }, sizeof(*s.texcoords));
+        memcpy(s.colors[v], (uint8_t[4]){ (uint8_t)(127 * x), (uint8_t)(255 * y), 7, 255 }, sizeof(*s.colors));
     }
-    uint32_t *out = s->indices;
+    uint32_t *out = s.indices;
     for (uint32_t y = 0; y < up; y++)
         for (uint32_t x = 0; x < across; x++, out += 6) {
             uint32_t a = y * (across + 1) + x, c = a + across + 1;
             memcpy(out, (uint32_t[6]){ a, a + 1, c + 1, a, c + 1, c }, sizeof(uint32_t[6]));
         }
-}
-
-void sheet_finish(struct wavy_sheet *s)
-{
-    mem_free(s->positions);
-    mem_free(s->normals);
-    mem_free(s->texcoords);
-    mem_free(s->colors);
-    mem_free(s->indices);
+    return s;
 }
 
 /* --- building blocks ----------------------------------------------------------------------------------------------------- */

@@ -14,8 +14,7 @@ struct wavy_sheet {
     uint32_t *indices;
 };
 
-void sheet_init(struct wavy_sheet *sheet, uint32_t across, uint32_t up);
-void sheet_finish(struct wavy_sheet *sheet);
+struct wavy_sheet sheet_create(uint32_t across, uint32_t up); /* The arrays belong to the test. */
 
 enum { SEED_COUNT = 19 };
 

@@ -10,7 +10,10 @@
 #include "base/log/log.h"
 #include "base/mem.h"
 #include "base/metrics/counters.h"
+#include "base/text/text.h"
 #include "base/workers.h"
+#include "history/history.h"
+#include "render/frame.h"
 #include "value/snapshot.h"
 #include "value/store.h"
 
@@ -57,6 +60,25 @@ void owned_release(size_t kept)
     }
 }
 
+void test_series(const struct history_series *series)
+{
+    owned_add(mem_free, series->points.at);
+    owned_add(mem_free, series->buckets.at);
+}
+
+static void release_text(void *resource)
+{
+    text_finish(resource);
+    mem_free(resource);
+}
+
+struct text *test_text(void)
+{
+    struct text *text = mem_new(sizeof(*text));
+    owned_add(release_text, text);
+    return text;
+}
+
 char *test_printf(const char *format, ...)
 {
     va_list arguments;
@@ -67,6 +89,24 @@ char *test_printf(const char *format, ...)
     va_end(arguments);
     owned_add(free, text);
     return text;
+}
+
+void *test_memory(void *memory)
+{
+    owned_add(mem_free, memory);
+    return memory;
+}
+
+static void release_frame(void *resource)
+{
+    struct frame *frame = resource;
+    frame_unref(&frame);
+}
+
+struct frame *test_frame(struct frame *frame)
+{
+    owned_add(release_frame, frame);
+    return frame;
 }
 
 static void release_json(void *json)

@@ -7,10 +7,13 @@
 #include <stddef.h>
 
 struct counters;
+struct frame;
+struct history_series;
 struct log;
 struct plant;
 struct snapshot;
 struct store;
+struct text;
 struct workers;
 
 /* Registers a resource with the running test: release(resource) is called once after the test's tear-down. */
@@ -21,7 +24,11 @@ size_t owned_count(void);
 void owned_release(size_t kept);
 
 /* Each of these functions creates a resource and registers it with owned_add(), so the caller must not release it. */
+void *test_memory(void *memory); /* hands over memory to be freed with mem_free(), and returns it; accepts NULL */
+struct frame *test_frame(struct frame *frame); /* hands the reference to `frame` over and returns `frame`; accepts NULL */
 json_t *test_json(json_t *json); /* registers an existing `json` and returns it; NULL is allowed */
+void test_series(const struct history_series *series); /* hands the arrays of the series over */
+struct text *test_text(void); /* returns an empty text */
 char *test_printf(const char *format, ...) __attribute__((format(printf, 1, 2)));
 struct log *test_log(void); /* returns a log that prints errors only */
 struct counters *test_counters(void);

@@ -12,11 +12,26 @@ double between(double low, double high)
     return low + (high - low) * cad_random(&chance);
 }
 
+static void release_surface(void *resource)
+{
+    struct surface *surface = resource;
+    surface_destroy(&surface);
+}
+
+void skip_if_watched(void)
+{
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    print_message("# too slow under a sanitizer\n");
+    skip();
+#endif
+}
+
 struct surface *surface_of(const struct cad *cad)
 {
     struct surface *surface = surface_create(the_log, workers, (const float(*)[3])cad->positions, cad->vertex_count, cad->triangles,
                                              cad->triangle_count, &(struct surface_params){ 0 });
     assert_non_null(surface);
+    owned_add(release_surface, surface);
     return surface;
 }
 

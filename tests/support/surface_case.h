@@ -16,7 +16,10 @@ extern struct cad_random chance;
 /* Returns a random number from low to high. */
 double between(double low, double high);
 
-/* Returns the surface of a shape, prepared with default parameters. Fails the test if the shape has no surface. */
+/* Skips the test under a sanitizer: the solver would take minutes and is not the code under test. */
+void skip_if_watched(void);
+
+/* Returns the surface of the shape with default parameters; it belongs to the test. Fails the test if there is none. */
 struct surface *surface_of(const struct cad *cad);
 
 /* Returns the interpolated value at a vertex for these readings, one per sensor. */

@@ -119,7 +119,6 @@ static void test_faults(const char *name, int row, const struct cad *clean, cons
         for (int s = 0; s < SOURCES; s++)
             if (is_source_tried(row, s))
                 score(name, fault, s, &truth, clean, distances + (size_t)s * broken.vertex_count, vertex_of, place.scale);
-        surface_destroy(&surface);
         cad_finish(&broken);
         mem_free(distances);
     }
@@ -133,15 +132,6 @@ static void test_alone(const char *name, int row, struct cad *clean)
     struct oracle_mesh mesh = mesh_of(clean, 0, clean->vertex_count, 0, clean->triangle_count);
     test_faults(name, row, clean, &mesh);
     cad_finish(clean);
-}
-
-/* Skips the test under a sanitizer: the solver would take minutes and is not the code under test. */
-static void skip_if_watched(void)
-{
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-    print_message("# too slow under a sanitizer\n");
-    skip();
-#endif
 }
 
 TEST(torus)
@@ -171,26 +161,24 @@ TEST(thin_walled_box)
 TEST(interpenetrating_pipes)
 {
     const double middle[3] = { 0, 0, 0 }, beside[3] = { 0.1 * cad_random(&chance), 0.1 * cad_random(&chance), 0.3 * cad_random(&chance) };
-    struct cad clean = { 0 };
+    struct cad *clean = test_cad();
     struct oracle_mesh outer;
     skip_if_watched();
-    cad_closed_pipe(&clean, &chance, 0.5, 4, cells(100), cells(110), cells(10), 0, middle);
-    size_t vertices = clean.vertex_count, triangles = clean.triangle_count;
-    struct cad second = { 0 };
-    cad_closed_pipe(&second, &chance, 0.35, 3.5, cells(80), cells(110), cells(8), 0.9 + 0.4 * cad_random(&chance), beside);
-    struct oracle_mesh a = mesh_of(&clean, 0, vertices, 0, triangles),
-                       b = mesh_of(&second, 0, second.vertex_count, 0, second.triangle_count);
+    cad_closed_pipe(clean, &chance, 0.5, 4, cells(100), cells(110), cells(10), 0, middle);
+    size_t vertices = clean->vertex_count, triangles = clean->triangle_count;
+    struct cad *second = test_cad();
+    cad_closed_pipe(second, &chance, 0.35, 3.5, cells(80), cells(110), cells(8), 0.9 + 0.4 * cad_random(&chance), beside);
+    struct oracle_mesh a = mesh_of(clean, 0, vertices, 0, triangles),
+                       b = mesh_of(second, 0, second->vertex_count, 0, second->triangle_count);
     assert_true(oracle_union(&a, &b, &outer));
-    mem_grow(&clean.positions, &clean.position_capacity, vertices + second.vertex_count, sizeof(*clean.positions));
-    mem_grow(&clean.triangles, &clean.index_capacity, 3 * (triangles + second.triangle_count), sizeof(*clean.triangles));
-    memcpy(clean.positions + vertices, second.positions, second.vertex_count * sizeof(*clean.positions));
-    for (size_t i = 0; i < 3 * second.triangle_count; i++)
-        clean.triangles[3 * triangles + i] = (uint32_t)vertices + second.triangles[i];
-    clean.vertex_count += second.vertex_count;
-    clean.triangle_count += second.triangle_count;
-    test_faults("two pipes", 3, &clean, &outer);
-    cad_finish(&clean);
-    cad_finish(&second);
+    mem_grow(&clean->positions, &clean->position_capacity, vertices + second->vertex_count, sizeof(*clean->positions));
+    mem_grow(&clean->triangles, &clean->index_capacity, 3 * (triangles + second->triangle_count), sizeof(*clean->triangles));
+    memcpy(clean->positions + vertices, second->positions, second->vertex_count * sizeof(*clean->positions));
+    for (size_t i = 0; i < 3 * second->triangle_count; i++)
+        clean->triangles[3 * triangles + i] = (uint32_t)vertices + second->triangles[i];
+    clean->vertex_count += second->vertex_count;
+    clean->triangle_count += second->triangle_count;
+    test_faults("two pipes", 3, clean, &outer);
     free((void *)outer.positions);
     free((void *)outer.triangles);
 }

@@ -121,9 +121,8 @@ CASE(what_is_asked_is_done_or_refused)
     const json_t *refusal = json_array_get(json_array_get(refused, 0), 3);
     assert_string_equal(json_string_value(json_object_get(refusal, "code")), "quiet");
     uint64_t number = 0;
-    char *text = alarms_text(NULL, s->alarm_service, s->plant, 0, &number);
+    char *text = test_memory(alarms_text(NULL, s->alarm_service, s->plant, 0, &number));
     assert_non_null(strstr(text, "null,\"Kim (panel)\",\"\"]"));
-    mem_free(text);
 }
 
 /* The device of both tags is lost. The alarm must appear once, under the device's name, and not for each tag. */
@@ -195,10 +194,9 @@ CASE(programs_get_pages)
     assert_int_equal(json_array_size(json_object_get(page, "alarms")), 1);
     assert_true(json_is_null(json_object_get(page, "next_offset")));
     assert_true(query(s, false, "format=csv", &q));
-    char *csv = alarms_api_text(s->alarm_service, s->plant, &q, 0);
+    char *csv = test_memory(alarms_api_text(s->alarm_service, s->plant, &q, 0));
     assert_non_null(strstr(csv, "\nTT-1,HH,unacknowledged,2,"));
     assert_non_null(strstr(csv, "Z,95,90,0,,,\n"));
-    mem_free(csv);
     static const char *const wrong[] = { "limit=0", "limit=x", "limit=10001", "tag=TT-9", "before=3", "format=xml", "what" };
     for (size_t i = 0; i < sizeof(wrong) / sizeof(wrong[0]); i++)
         assert_false(query(s, false, wrong[i], &q));
@@ -252,11 +250,10 @@ static void restart_in(struct alarm_message_setup *s, const char *unit, double l
 static void expect_row(struct alarm_message_setup *s, double limit, const char *unit, double value)
 {
     struct alarm_query q;
-    struct text out = { 0 };
+    struct text *out = test_text();
     assert_true(query(s, true, "limit=100", &q));
-    assert_true(alarms_journal_text(s->log, s->folder, s->plant, &q, &out));
-    json_t *rows = json_object_get(test_json(json_loads(out.at, 0, NULL)), "rows"), *row = json_array_get(rows, json_array_size(rows) - 1);
-    text_finish(&out);
+    assert_true(alarms_journal_text(s->log, s->folder, s->plant, &q, out));
+    json_t *rows = json_object_get(test_json(json_loads(out->at, 0, NULL)), "rows"), *row = json_array_get(rows, json_array_size(rows) - 1);
     assert_string_equal(json_string_value(json_object_get(row, "kind")), "H");
     assert_float_equal(json_number_value(json_object_get(row, "limit")), limit, 1e-3);
     if (unit)
@@ -333,12 +330,10 @@ CASE(large_readings_keep_their_digits)
         mem_free(text);
     }
     give(s, 1, 12345678, QUALITY_GOOD);
-    char *alarms = alarms_text(NULL, s->alarm_service, s->plant, clock_utc_ns(), &(uint64_t){ 0 });
+    char *alarms = test_memory(alarms_text(NULL, s->alarm_service, s->plant, clock_utc_ns(), &(uint64_t){ 0 }));
     assert_non_null(strstr(alarms, ",12345678,80"));
-    mem_free(alarms);
-    struct text out = { 0 };
+    struct text *out = test_text();
     struct history_series series = { .points = { .at = &(struct history_point){ 0, 123456789012, QUALITY_GOOD }, .count = 1 } };
-    series_text_json(&out, "TT-1", "Wh", &series);
-    assert_non_null(strstr(out.at, "[0,123456789012,0]"));
-    text_finish(&out);
+    series_text_json(out, "TT-1", "Wh", &series);
+    assert_non_null(strstr(out->at, "[0,123456789012,0]"));
 }

@@ -34,11 +34,8 @@ static void begin(struct alarm_service_setup *s)
     s->plant = plant_by_hand_create(TAGS);
     s->plant->alarms = ALARMS_LOCAL;
     plant_by_hand_source(s->plant, "plc", 502);
-    for (int i = 0; i < TAGS; i++) {
-        char name[16];
-        snprintf(name, sizeof(name), "T-%04d", i);
-        plant_by_hand_tag(s->plant, name, TABLE_HOLDING, i, DATA_INT16)->alarms.limits[LIMIT_H] = 80;
-    }
+    for (int i = 0; i < TAGS; i++)
+        plant_by_hand_tag(s->plant, test_printf("T-%04d", i), TABLE_HOLDING, i, DATA_INT16)->alarms.limits[LIMIT_H] = 80;
     s->store = test_store(s->plant);
 }
 
@@ -161,11 +158,10 @@ CASE(while_nothing_was_recorded_no_alarm_is_known)
     assert_int_equal(wait_for(s, ALARM_UNACKNOWLEDGED, TAGS), TAGS);
     alarm_service_stop(&s->alarm_service);
     int64_t ended_us = clock_utc_ns() / 1000;
-    struct history_tag *tags = history_tags(s->plant);
+    struct history_tag *tags = test_memory(history_tags(s->plant));
     struct month_file *file = month_file_open(s->log, s->folder, month_of(ended_us), tags, TAGS, &error);
     assert_int_equal(month_file_note(file, ended_us, "gap", "not recorded for 60 s"), 0);
     month_file_close(&file);
-    mem_free(tags);
     struct history_reader *reader = history_reader_create(s->log, s->folder);
     assert_int_equal(alarms_of(s, reader, ended_us - 1000), TAGS);
     assert_int_equal(alarms_of(s, reader, ended_us + 30 * US_PER_S), 0);
@@ -182,11 +178,8 @@ CASE(killed_at_any_moment_it_goes_on)
         give_all(s, 90);
         wait_for(s, ALARM_UNACKNOWLEDGED, TAGS);
         const struct alarm_act act = { ALARM_ACKNOWLEDGE, 0, "kim", "" };
-        for (int i = 0; i < 400; i++) {
-            char name[16];
-            snprintf(name, sizeof(name), "T-%04d", i);
-            alarm_service_act(s->alarm_service, name, ALARM_H, &act);
-        }
+        for (int i = 0; i < 400; i++)
+            alarm_service_act(s->alarm_service, test_printf("T-%04d", i), ALARM_H, &act);
         for (;;)
             pause();
     }

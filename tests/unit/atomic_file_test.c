@@ -30,9 +30,8 @@ TEST_FIXTURE(struct atomic_file_fixture, begin, NULL)
 static void assert_text(const char *path, const char *want)
 {
     size_t bytes;
-    char *text = text_read_file(path, 100, &bytes);
+    char *text = test_memory(text_read_file(path, 100, &bytes));
     assert_string_equal(text, want);
-    mem_free(text);
 }
 
 static void assert_nothing_beside(const struct atomic_file_fixture *f)

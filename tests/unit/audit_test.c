@@ -3,7 +3,6 @@
 #include "tests/support/test.h"
 #include <sys/resource.h>
 #include <signal.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "audit/audit.h"
@@ -19,14 +18,13 @@ static const struct audit_entry ENTRY = { .event = "alarm", .result = "done", .w
 static char *write_lines(const char *path, int count, size_t most_bytes)
 {
     struct audit_file file;
-    struct text lines = { 0 };
+    struct text *lines = test_text();
     char *found, *later;
     assert_int_equal(audit_file_open(&file, path, most_bytes, &found), 0);
     for (int i = 0; i < count; i++) {
-        assert_int_equal(audit_file_append(&file, &ENTRY, AT_US + i, &lines, &later), 0);
+        assert_int_equal(audit_file_append(&file, &ENTRY, AT_US + i, lines, &later), 0);
         assert_null(later);
     }
-    text_finish(&lines);
     audit_file_close(&file);
     return found;
 }
@@ -74,7 +72,7 @@ TEST(test_any_changed_byte)
     assert_null(write_lines(path, 5, 1 << 20));
     expect_good(path, 1, 5);
     audit_chain_init(&none);
-    char *bytes = text_read_file(path, 1 << 20, &count);
+    char *bytes = test_memory(text_read_file(path, 1 << 20, &count));
     for (size_t i = 0; i < count; i++) {
         struct audit_report report;
         bytes[i] ^= 1;
@@ -88,7 +86,6 @@ TEST(test_any_changed_byte)
     }
     put(path, bytes, count);
     expect_good(path, 1, 5);
-    mem_free(bytes);
 }
 
 /* Finds where lines begin in a file of `count` bytes: starts[] receives the offset of each line, then `count`. Returns the
@@ -108,7 +105,7 @@ TEST(test_lines_removed_and_moved)
     char *dir = temp_folder(), *path = test_printf("%s/a", dir), *head_path = test_printf("%s.head", path);
     size_t count, starts[8];
     mem_free(write_lines(path, 5, 1 << 20));
-    char *bytes = text_read_file(path, 1 << 20, &count), *copy = mem_array(count, 1);
+    char *bytes = test_memory(text_read_file(path, 1 << 20, &count)), *copy = test_memory(mem_array(count, 1));
     assert_int_equal(starts_of(bytes, count, starts), 5);
     /* removes the third line */
     memcpy(copy, bytes, starts[2]);
@@ -145,8 +142,6 @@ TEST(test_lines_removed_and_moved)
     expect_fault(path, &known, "before line 5 of --known");
     memset(third.hash, 'a', AUDIT_HASH_CHARS);
     expect_fault(path, &third, "line 3 differs from the line recorded in --known");
-    mem_free(copy);
-    mem_free(bytes);
 }
 
 /* When a daemon starts with a truncated audit trail, it reports the gap and goes on; verifying the trail must still find the
@@ -158,7 +153,7 @@ TEST(test_next_start)
     mem_free(write_lines(path, 3, 1 << 20));
     assert_null(write_lines(path, 2, 1 << 20));
     expect_good(path, 1, 5);
-    char *bytes = text_read_file(path, 1 << 20, &count);
+    char *bytes = test_memory(text_read_file(path, 1 << 20, &count));
     starts_of(bytes, count, starts);
     assert_int_equal(truncate(path, (off_t)starts[3]), 0);
     finding = write_lines(path, 1, 1 << 20);
@@ -177,13 +172,12 @@ TEST(test_next_start)
     assert_non_null(strstr(finding, "an incomplete last line"));
     mem_free(finding);
     expect_good(path, 1, 5);
-    mem_free(bytes);
 }
 
 TEST(test_rotation)
 {
     char *dir = temp_folder(), *path = test_printf("%s/a", dir), *full = test_printf("%s.000000000004", path), *later;
-    struct text lines = { 0 };
+    struct text *lines = test_text();
     struct audit_file file;
     /* writes ten lines of about 280 bytes with at most 1,000 bytes per file, so that the trail continues in further files */
     assert_null(write_lines(path, 10, 1000));
@@ -194,20 +188,20 @@ TEST(test_rotation)
     /* another program moves the file away while it is open */
     char *moved = test_printf("%s.000000000012", path);
     assert_int_equal(audit_file_open(&file, path, 1 << 20, &later), 0);
-    assert_int_equal(audit_file_append(&file, &ENTRY, AT_US, &lines, &later), 0);
+    assert_int_equal(audit_file_append(&file, &ENTRY, AT_US, lines, &later), 0);
     assert_int_equal(rename(path, moved), 0);
-    assert_int_equal(audit_file_append(&file, &ENTRY, AT_US, &lines, &later), 0);
+    assert_int_equal(audit_file_append(&file, &ENTRY, AT_US, lines, &later), 0);
     assert_null(later);
     expect_good(path, 4, 13);
     /* another program truncates the audit trail while the daemon has it open */
     assert_int_equal(truncate(path, 0), 0);
-    assert_int_equal(audit_file_append(&file, &ENTRY, AT_US, &lines, &later), 0);
+    assert_int_equal(audit_file_append(&file, &ENTRY, AT_US, lines, &later), 0);
     assert_non_null(strstr(later, "another program changed the file"));
     mem_free(later);
     expect_fault(path, NULL, "lines before this line were removed or inserted");
     /* another program removes the audit trail while the daemon has it open */
     unlink(path);
-    assert_int_equal(audit_file_append(&file, &ENTRY, AT_US, &lines, &later), 0);
+    assert_int_equal(audit_file_append(&file, &ENTRY, AT_US, lines, &later), 0);
     assert_non_null(strstr(later, "was removed"));
     mem_free(later);
     audit_file_close(&file);
@@ -215,7 +209,6 @@ TEST(test_rotation)
     unlink(full);
     unlink(moved);
     expect_fault(path, NULL, "lines before this line were removed or inserted");
-    text_finish(&lines);
 }
 
 /* While the file cannot grow (full disk), appending fails and must leave no partial line. Once it can grow again, the next line
@@ -224,26 +217,25 @@ TEST(test_full_disk)
 {
     char *dir = temp_folder(), *path = test_printf("%s/a", dir), *later;
     struct rlimit before, less;
-    struct text lines = { 0 };
+    struct text *lines = test_text();
     struct audit_file file;
     signal(SIGXFSZ, SIG_IGN);
     assert_int_equal(audit_file_open(&file, path, 1 << 20, &later), 0);
-    assert_int_equal(audit_file_append(&file, &ENTRY, AT_US, &lines, &later), 0);
-    size_t bytes = lines.length;
+    assert_int_equal(audit_file_append(&file, &ENTRY, AT_US, lines, &later), 0);
+    size_t bytes = lines->length;
     getrlimit(RLIMIT_FSIZE, &before);
     less = before;
     less.rlim_cur = bytes + 100;
     setrlimit(RLIMIT_FSIZE, &less);
     for (int i = 0; i < 3; i++)
-        assert_true(audit_file_append(&file, &ENTRY, AT_US, &lines, &later) < 0);
-    assert_int_equal(lines.length, bytes);
+        assert_true(audit_file_append(&file, &ENTRY, AT_US, lines, &later) < 0);
+    assert_int_equal(lines->length, bytes);
     setrlimit(RLIMIT_FSIZE, &before);
     expect_good(path, 1, 1);
-    assert_int_equal(audit_file_append(&file, &ENTRY, AT_US, &lines, &later), 0);
+    assert_int_equal(audit_file_append(&file, &ENTRY, AT_US, lines, &later), 0);
     assert_null(later);
     expect_good(path, 1, 2);
     audit_file_close(&file);
-    text_finish(&lines);
 }
 
 /* A full disk refuses one row, and takes the next one a moment later. A caller that waits for both must still get the error. */
@@ -265,20 +257,18 @@ TEST(test_an_error_outlasts_the_next_success)
 TEST(test_strangers_texts)
 {
     struct audit_chain chain, read;
-    struct text out = { 0 };
-    char *longest = mem_array(5001, 1);
+    struct text *out = test_text();
+    char *longest = test_memory(mem_array(5001, 1));
     const char *why;
     memset(longest, '"', 5000);
     audit_chain_init(&chain);
     audit_chain_init(&read);
     const struct audit_entry entry = { .event = "login", .result = "refused", .who = "a\nb\xff\x01\xed\xa0\x80", .what = longest };
-    audit_chain_add(&chain, &entry, AT_US, &out);
-    assert_int_equal(strcspn(out.at, "\n"), out.length - 1);
-    assert_non_null(strstr(out.at, "\"who\":\"a?b??"));
-    assert_true(out.length < AUDIT_LINE_BYTES);
-    assert_true(audit_chain_check(&read, out.at, out.length - 1, false, &why));
-    mem_free(longest);
-    text_finish(&out);
+    audit_chain_add(&chain, &entry, AT_US, out);
+    assert_int_equal(strcspn(out->at, "\n"), out->length - 1);
+    assert_non_null(strstr(out->at, "\"who\":\"a?b??"));
+    assert_true(out->length < AUDIT_LINE_BYTES);
+    assert_true(audit_chain_check(&read, out->at, out->length - 1, false, &why));
 }
 
 TEST(test_syslog_frame)
@@ -307,8 +297,7 @@ TEST(test_daemon)
     audit_stop(&audit);
     expect_good(path, 1, 200);
     assert_null(audit_start(&(struct audit_params){ .log = log, .counters = counters, .path = "/nowhere/a" }));
-    struct text metrics = { 0 };
-    counters_print(counters, &metrics);
-    assert_non_null(strstr(metrics.at, "plantcast_audit_lines_total 200"));
-    text_finish(&metrics);
+    struct text *metrics = test_text();
+    counters_print(counters, metrics);
+    assert_non_null(strstr(metrics->at, "plantcast_audit_lines_total 200"));
 }

@@ -6,6 +6,7 @@
 #include "tests/support/test.h"
 #include <jansson.h>
 
+#include "base/math/search.h"
 #include "preprocess/cache/folder.h"
 #include "protocol/asset_distance.h"
 #include "tests/support/glb.h"
@@ -93,37 +94,33 @@ static void scatter_sensors(struct awkward *a, size_t count)
 
 static void write_model(const struct awkward *a)
 {
-    struct text bin = { 0 };
+    struct text *bin = test_text();
     size_t size;
     for (size_t v = 0; v < a->vertex_count; v++)
-        text_add_bytes(&bin, (const float[3]){ (float)a->vertices_m[v][0], (float)a->vertices_m[v][1], 0 }, 3 * sizeof(float));
-    text_add_bytes(&bin, a->triangles, a->triangle_count * sizeof(*a->triangles));
+        text_add_bytes(bin, (const float[3]){ (float)a->vertices_m[v][0], (float)a->vertices_m[v][1], 0 }, 3 * sizeof(float));
+    text_add_bytes(bin, a->triangles, a->triangle_count * sizeof(*a->triangles));
     char *json = test_printf(
         "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":%zu}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":%zu}],"
         "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"name\":\"plate\",\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":"
         "{\"POSITION\":0},\"indices\":1}]}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":%zu,"
         "\"type\":\"VEC3\"},{\"bufferView\":0,\"byteOffset\":%zu,\"componentType\":5125,\"count\":%zu,\"type\":\"SCALAR\"}]}",
-        bin.length, bin.length, a->vertex_count, 12 * a->vertex_count, 3 * a->triangle_count);
-    char *glb = glb_build(json, bin.at, bin.length, &size);
+        bin->length, bin->length, a->vertex_count, 12 * a->vertex_count, 3 * a->triangle_count);
+    char *glb = test_memory(glb_build(json, bin->at, bin->length, &size));
     temp_write(a->files->folder, "model.glb", glb, size);
-    mem_free(glb);
-    text_finish(&bin);
 }
 
 static void write_plant(const struct awkward *a)
 {
-    struct text tags = { 0 };
-    char *reach = a->reach_m < INFINITY ? mem_printf(", reach_m: %.9g", a->reach_m) : mem_strdup("");
+    struct text *tags = test_text();
+    char *reach = test_memory(a->reach_m < INFINITY ? mem_printf(", reach_m: %.9g", a->reach_m) : mem_strdup(""));
     char *yaml = test_printf("plant: { name: Awkward }\ngroups: [{ id: t, unit: K, min: 0, max: 1, power: %.9g%s }]\ntags: tags.csv\n"
                             "assets: [{ id: A, model: model.glb, nodes: plate, up: z }]\n",
                             a->power, reach);
     prep_case_plant(a->files, yaml);
-    text_add(&tags, "Tag Name,Group,Asset,X,Y,Z\n");
+    text_add(tags, "Tag Name,Group,Asset,X,Y,Z\n");
     for (size_t s = 0; s < a->sensor_count; s++)
-        text_add(&tags, "S%zu,t,A,%.9g,%.9g,0\n", s, a->sensors_m[s][0], a->sensors_m[s][1]);
-    temp_write_text(a->files->folder, "tags.csv", tags.at);
-    text_finish(&tags);
-    mem_free(reach);
+        text_add(tags, "S%zu,t,A,%.9g,%.9g,0\n", s, a->sensors_m[s][0], a->sensors_m[s][1]);
+    temp_write_text(a->files->folder, "tags.csv", tags->at);
 }
 
 /* errors of an asset's finest level that the report of the preparation names, in colour steps; 0: the report names none */
@@ -276,11 +273,6 @@ static double error_in(const struct awkward *a, const struct asset_view *view, c
     return fmax(above, below);
 }
 
-static int by_size(const void *a, const void *b)
-{
-    return *(const double *)a < *(const double *)b ? -1 : *(const double *)a > *(const double *)b;
-}
-
 /* Asserts that all errors but a few are at most `steps` colour steps, or that the report names the asset with an error that is
    large enough. */
 static void assert_errors(const struct awkward *a, double *errors, const char *name, double steps, const struct named *named)
@@ -288,7 +280,7 @@ static void assert_errors(const struct awkward *a, double *errors, const char *n
     const size_t few = a->reach_m < INFINITY ? FEW_AT_RIMS : FEW;
     const double worst_named = a->reach_m < INFINITY ? fmax(named->worth_a_look, named->beside_rims) : named->worth_a_look;
     size_t over = 0;
-    qsort(errors, POINTS, sizeof(*errors), by_size);
+    qsort(errors, POINTS, sizeof(*errors), compare_doubles);
     while (over < POINTS && errors[POINTS - 1 - over] > steps * ROUNDING)
         over++;
     print_message("# %s: %zu of %d places err by more than %.0f steps, the worst by %.2f; %.2f named\n", name, over, POINTS, steps,

@@ -60,14 +60,13 @@ TEST(files_are_read_whole_and_replaced_at_once)
                                      "456",
                                      6),
                      0);
-    char *text = text_read_file(path, 6, &bytes);
+    char *text = test_memory(text_read_file(path, 6, &bytes));
     assert_non_null(text);
     assert_int_equal(bytes, 6);
     assert_memory_equal(text,
                         "12\0"
                         "456",
                         7); /* compares 7 bytes: the 6 of the file, and the zero byte that text_read_file() appends */
-    mem_free(text);
     assert_null(text_read_file(path, 5, &bytes));
     assert_int_equal(errno, EFBIG);
     assert_null(text_read_file(nowhere, 5, &bytes));
@@ -92,9 +91,8 @@ TEST(memory_is_zeroed_and_checked)
         assert_int_equal(numbers[i], i == 2 ? 7 : 0);
     mem_free(numbers);
     assert_null(mem_try_array(SIZE_MAX / 2, 4));
-    char *none = mem_try_array(0, 0);
+    char *none = test_memory(mem_try_array(0, 0));
     assert_non_null(none);
-    mem_free(none);
     char *text = test_printf("%s-%d", "a", 5);
     assert_string_equal(text, "a-5");
 }
@@ -177,18 +175,17 @@ TEST(of_many_errors_alike_the_first_are_printed)
 TEST(counters_are_printed_by_family)
 {
     struct counters *counters = test_counters();
-    struct text text = { 0 };
+    struct text *text = test_text();
     counter *a = counters_add(counters, "reads_total{source=\"a\"}", "counter", "Reads.");
     counter_set(counters_add(counters, "sessions", "gauge", "Sessions."), 3);
     counter_inc(counters_add(counters, "reads_total{source=\"b\"}", "counter", "Reads."), 2);
     counter_inc(a, 40);
     assert_ptr_equal(counters_add(counters, "reads_total{source=\"a\"}", "counter", "Reads."), a);
     counter_inc(a, 2);
-    counters_print(counters, &text);
-    assert_string_equal(text.at, "# HELP reads_total Reads.\n# TYPE reads_total counter\n"
-                                 "reads_total{source=\"a\"} 42\nreads_total{source=\"b\"} 2\n"
-                                 "# HELP sessions Sessions.\n# TYPE sessions gauge\nsessions 3\n");
-    text_finish(&text);
+    counters_print(counters, text);
+    assert_string_equal(text->at, "# HELP reads_total Reads.\n# TYPE reads_total counter\n"
+                                  "reads_total{source=\"a\"} 42\nreads_total{source=\"b\"} 2\n"
+                                  "# HELP sessions Sessions.\n# TYPE sessions gauge\nsessions 3\n");
 }
 
 static int lines_with(const char *text, const char *words)
@@ -217,7 +214,7 @@ TEST(repeats_in_the_log_are_counted)
     fflush(stderr);
     dup2(kept, STDERR_FILENO);
     close(kept);
-    char *text = text_read_file(path, 1 << 20, &bytes);
+    char *text = test_memory(text_read_file(path, 1 << 20, &bytes));
     assert_non_null(text);
     assert_null(log);
     assert_int_equal(lines_with(text, "warn  disk 1 is full\n"), 2);
@@ -225,13 +222,12 @@ TEST(repeats_in_the_log_are_counted)
     assert_int_equal(lines_with(text, "warn  disk 1 is full (1 more)\n"), 1);
     assert_int_equal(lines_with(text, "error other\n"), 1);
     assert_int_equal(lines_with(text, "\n"), 5);
-    mem_free(text);
 }
 
 TEST(durations_are_counted_by_bucket)
 {
     struct counters *counters = test_counters();
-    struct text text = { 0 };
+    struct text *text = test_text();
     struct histogram *plain = counters_add_histogram(counters, "plain_seconds", "Plain.");
     struct histogram *labelled = counters_add_histogram(counters, "stage_seconds{stage=\"a\"}", "Stages.");
     assert_ptr_equal(counters_add_histogram(counters, "plain_seconds", "Plain."), plain);
@@ -239,7 +235,7 @@ TEST(durations_are_counted_by_bucket)
     for (size_t i = 0; i < sizeof(ms) / sizeof(ms[0]); i++)
         histogram_add(plain, ms[i] * NS_PER_MS);
     histogram_add(labelled, 25 * NS_PER_MS);
-    counters_print(counters, &text);
+    counters_print(counters, text);
     static const char *const wanted[] = { "# TYPE plain_seconds histogram\n",
                                           "plain_seconds_bucket{le=\"0.0005\"} 2\n",
                                           "plain_seconds_bucket{le=\"0.002\"} 5\n",
@@ -252,16 +248,14 @@ TEST(durations_are_counted_by_bucket)
                                           "stage_seconds_sum{stage=\"a\"} 0.025000\n",
                                           "stage_seconds_count{stage=\"a\"} 1\n" };
     for (size_t i = 0; i < sizeof(wanted) / sizeof(wanted[0]); i++)
-        assert_non_null(strstr(text.at, wanted[i]));
-    text_finish(&text);
+        assert_non_null(strstr(text->at, wanted[i]));
 }
 
 TEST(numbers_of_microseconds_are_printed_in_seconds)
 {
     struct counters *counters = test_counters();
-    struct text text = { 0 };
+    struct text *text = test_text();
     counter_set(counters_add_seconds(counters, "spent_seconds_total", "counter", "Time."), 12345678);
-    counters_print(counters, &text);
-    assert_string_equal(text.at, "# HELP spent_seconds_total Time.\n# TYPE spent_seconds_total counter\nspent_seconds_total 12.345678\n");
-    text_finish(&text);
+    counters_print(counters, text);
+    assert_string_equal(text->at, "# HELP spent_seconds_total Time.\n# TYPE spent_seconds_total counter\nspent_seconds_total 12.345678\n");
 }

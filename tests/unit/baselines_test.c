@@ -63,8 +63,7 @@ TEST(test_names_are_bounded)
     struct baselines *baselines = baselines_create();
     struct baseline list[BASELINES_NAMED];
     for (int i = 0; i < BASELINES_NAMED; i++) {
-        char name[16];
-        snprintf(name, sizeof(name), "b%d", i);
+        char *name = test_printf("b%d", i);
         assert_true(baselines_may_set(baselines, name));
         assert_int_not_equal(set(baselines, name, i), 0);
     }

@@ -75,7 +75,7 @@ TEST(groups_are_those_of_all_pairs)
 TEST(a_plate_across_any_axis_takes_no_longer)
 {
     enum { COUNT = 83750 };
-    struct part_box *boxes = mem_array(COUNT, sizeof(*boxes));
+    struct part_box *boxes = test_memory(mem_array(COUNT, sizeof(*boxes)));
     for (int flat = 0; flat < 4; flat++)
         for (int large = 0; large < 3; large++) {
             fill(boxes, COUNT, flat, (const double[]){ 0.002, 0.02, 0.1 }[large], 7);
@@ -87,5 +87,4 @@ TEST(a_plate_across_any_axis_takes_no_longer)
             assert_true(took_s < 1.5);
             mem_free(parent);
         }
-    mem_free(boxes);
 }

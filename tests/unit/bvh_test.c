@@ -190,7 +190,7 @@ static int meets_slowly(const struct trimesh *mesh, uint32_t tri, const double f
 
 static void check_ray(const struct trimesh *mesh, const struct bvh *bvh, const double from[3], const double way[3], int counts[2])
 {
-    char *met = mem_array(mesh->tri_count, 1);
+    char *met = test_memory(mem_array(mesh->tri_count, 1));
     bvh_ray(bvh, from, way, mark_hit, met);
     for (uint32_t t = 0; t < mesh->tri_count; t++) {
         int expected = meets_slowly(mesh, t, from, way);
@@ -199,14 +199,13 @@ static void check_ray(const struct trimesh *mesh, const struct bvh *bvh, const d
             counts[expected]++;
         }
     }
-    mem_free(met);
 }
 
 /* Asserts that bvh_overlaps() visits exactly once each triangle whose bounding box is within margin_m of the box, and no
    triangle that is clearly farther away. */
 static void check_box(const struct trimesh *mesh, const struct bvh *bvh, const double low[3], const double high[3], double margin_m)
 {
-    char *met = mem_array(mesh->tri_count, 1);
+    char *met = test_memory(mem_array(mesh->tri_count, 1));
     bvh_overlaps(bvh, low, high, margin_m, mark, met);
     for (uint32_t t = 0; t < mesh->tri_count; t++) {
         double apart_m = -INFINITY;
@@ -220,7 +219,6 @@ static void check_box(const struct trimesh *mesh, const struct bvh *bvh, const d
         else
             assert_true(met[t] == 0 || apart_m < margin_m + 0.1);
     }
-    mem_free(met);
 }
 
 TEST(test_what_rays_and_boxes_meet)

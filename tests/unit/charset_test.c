@@ -148,9 +148,8 @@ TEST(test_unsure)
                                                 "e",
                                                 5);
     assert_string_not_equal(choice.other, "");
-    char *said = charset_describe(&choice);
+    char *said = test_memory(charset_describe(&choice));
     assert_non_null(strstr(said, "--encoding NAME"));
-    mem_free(said);
 }
 
 /* In some encodings an accent follows its letter, so the decoder delays each letter until the next byte. The last letter must
@@ -169,9 +168,8 @@ TEST(test_last_letter)
     };
     for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
         size_t damaged = 0;
-        char *text = charset_convert(cases[i].bytes, strlen(cases[i].bytes), cases[i].encoding, &damaged);
+        char *text = test_memory(charset_convert(cases[i].bytes, strlen(cases[i].bytes), cases[i].encoding, &damaged));
         assert_string_equal(text, cases[i].utf8);
         assert_int_equal(damaged, 0);
-        mem_free(text);
     }
 }

@@ -27,7 +27,6 @@ static void make(struct made *made, const double source_m[3])
 static void finish(struct made *made)
 {
     cloud_heat_destroy(&made->cloud);
-    surface_destroy(&made->surface);
     cad_finish(&made->cad);
     mem_free(made->along_m);
 }
@@ -54,12 +53,11 @@ TEST(test_sphere)
     struct made made = { 0 };
     cad_sphere(&made.cad, &chance, 24);
     make(&made, (const double[3]){ 0, 0, 1 });
-    double *truth = mem_array(made.cad.vertex_count, sizeof(*truth));
+    double *truth = test_memory(mem_array(made.cad.vertex_count, sizeof(*truth)));
     for (size_t v = 0; v < made.cad.vertex_count; v++)
         truth[v] = acos(fmax(-1, fmin(1, (double)made.cad.positions[v][2])));
     expect_errors(&made, "sphere", truth, 0.008, 0.02);
     assert_in_range(cloud_heat_count(made.cloud), 15000, 60000);
-    mem_free(truth);
     finish(&made);
 }
 
@@ -78,14 +76,13 @@ TEST(test_tube)
     for (int k = 0; k < 3; k++)
         axis = spread[k] > spread[axis] ? k : axis;
     const int a = (axis + 1) % 3, b = (axis + 2) % 3;
-    double *truth = mem_array(made.cad.vertex_count, sizeof(*truth));
+    double *truth = test_memory(mem_array(made.cad.vertex_count, sizeof(*truth)));
     for (size_t v = 0; v < made.cad.vertex_count; v++) {
         const float *p = made.cad.positions[v];
         double turn = fabs(remainder(atan2((double)p[b], (double)p[a]) - atan2(source_m[b], source_m[a]), 2 * M_PI));
         truth[v] = hypot(turn, (double)p[axis] - source_m[axis]);
     }
     expect_errors(&made, "open tube", truth, 0.006, 0.04);
-    mem_free(truth);
     finish(&made);
 }
 
@@ -134,7 +131,7 @@ TEST(test_serpentine)
     struct made made = { 0 };
     const double leg_m = 1, gap_m = 0.2, long_m = 120;
     cad_plate(&made.cad, &chance, 1201, 3, long_m, 0.1, 0);
-    double *truth = mem_array(made.cad.vertex_count, sizeof(*truth));
+    double *truth = test_memory(mem_array(made.cad.vertex_count, sizeof(*truth)));
     for (size_t v = 0; v < made.cad.vertex_count; v++) {
         float *p = made.cad.positions[v];
         double along_m = (double)p[0], turn = floor(along_m / (leg_m + gap_m) + 1e-6), rest_m = along_m - turn * (leg_m + gap_m);
@@ -146,7 +143,6 @@ TEST(test_serpentine)
     make(&made, (const double[3]){ 0, 0, 0 });
     /* larger errors are allowed, because paths through the point cloud cut the corners at the ribbon's bends */
     expect_errors(&made, "serpentine", truth, 0.04, 0.08);
-    mem_free(truth);
     finish(&made);
 }
 

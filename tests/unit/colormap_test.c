@@ -116,7 +116,7 @@ TEST(test_relief_is_read_back_through_shading)
 TEST(test_maps_can_be_added)
 {
     uint8_t rgb[256][3];
-    struct plant *plant = mem_new(sizeof(*plant));
+    struct plant *plant = test_memory(mem_new(sizeof(*plant)));
     size_t before = colormap_count(plant);
     for (int i = 0; i < 256; i++)
         /* a map in which lightness alone encodes the value, so that only little shading is allowed */
@@ -133,5 +133,4 @@ TEST(test_maps_can_be_added)
     while (colormap_count(plant) < COLORMAPS_BUILT_IN + PLANT_COLORMAPS)
         assert_true(colormap_add(plant, "other", (const uint8_t(*)[3])rgb));
     assert_false(colormap_add(plant, "one too many", (const uint8_t(*)[3])rgb));
-    mem_free(plant);
 }

@@ -69,7 +69,7 @@ static void read_in_pieces(const void *compressed, size_t bytes, char *to, size_
 
 TEST(contents_come_back_unchanged)
 {
-    uint32_t *words = mem_array(COUNT, sizeof(*words));
+    uint32_t *words = test_memory(mem_array(COUNT, sizeof(*words)));
     fill(words, COUNT);
     static const size_t lengths[] = { 0, 1, 3, 4, 5, 4095, 1 << 18, (1 << 18) + 1, 3 << 18, 4 * COUNT - 1, 4 * COUNT };
     for (size_t i = 0; i < sizeof(lengths) / sizeof(*lengths); i++) {
@@ -88,7 +88,6 @@ TEST(contents_come_back_unchanged)
         mem_free(back);
         mem_free(compressed);
     }
-    mem_free(words);
 }
 
 TEST(a_failed_write_ends_the_compression)
@@ -102,9 +101,9 @@ TEST(a_failed_write_ends_the_compression)
    text. Each kind must become as small as expected. */
 TEST(each_kind_of_array_becomes_small)
 {
-    uint32_t *words = mem_array(COUNT, sizeof(*words));
-    float *floats = mem_array(COUNT, sizeof(*floats));
-    char *text = mem_array(COUNT, 4);
+    uint32_t *words = test_memory(mem_array(COUNT, sizeof(*words)));
+    float *floats = test_memory(mem_array(COUNT, sizeof(*floats)));
+    char *text = test_memory(mem_array(COUNT, 4));
     for (size_t i = 0; i < COUNT; i++) {
         floats[i] = 1 + (float)((i * 7919) % 1000) / 256;
         memcpy(text + 4 * i, i % 3 ? "pipe" : "flan", 4);
@@ -119,9 +118,6 @@ TEST(each_kind_of_array_becomes_small)
         assert_true((double)bytes < most[i] * 4 * COUNT);
         mem_free(compressed);
     }
-    mem_free(text);
-    mem_free(floats);
-    mem_free(words);
 }
 
 /* --- damage ----------------------------------------------------------------------------------------------------------------------- */
@@ -130,10 +126,10 @@ TEST(each_kind_of_array_becomes_small)
    bounds. */
 TEST(damaged_bytes_are_refused_or_harmless)
 {
-    uint32_t *words = mem_array(COUNT, sizeof(*words));
+    uint32_t *words = test_memory(mem_array(COUNT, sizeof(*words)));
     size_t bytes, count, refused = 0, tried = 0;
     fill(words, COUNT);
-    uint8_t *compressed = compress_one(words, 4 * COUNT, &bytes);
+    uint8_t *compressed = test_memory(compress_one(words, 4 * COUNT, &bytes));
     for (size_t i = 0; i < bytes; i += i < 64 ? 1 : bytes / 97) {
         compressed[i] ^= 0x15;
         void *back = decompress(compressed, bytes, &count);
@@ -151,8 +147,6 @@ TEST(damaged_bytes_are_refused_or_harmless)
         assert_null(decompress(shorter, bytes - cut, &count));
         mem_free(shorter);
     }
-    mem_free(compressed);
-    mem_free(words);
 }
 
 /* A header with a size that does not match the number of chunks is refused before any memory is allocated for it. */
@@ -161,7 +155,7 @@ TEST(false_sizes_are_refused)
     static const uint64_t sizes[] = { 0, 1, 999, 1001, 1 << 18, (1 << 18) + 1000, (uint64_t)1 << 40, UINT64_MAX, UINT64_MAX - 7 };
     char content[1000] = "content";
     size_t bytes, count;
-    uint8_t *compressed = compress_one(content, sizeof(content), &bytes);
+    uint8_t *compressed = test_memory(compress_one(content, sizeof(content), &bytes));
     for (size_t i = 0; i < sizeof(sizes) / sizeof(*sizes); i++) {
         memcpy(compressed, &sizes[i], sizeof(sizes[i]));
         assert_int_equal(decompressed_size(compressed, bytes), SIZE_MAX);
@@ -175,7 +169,6 @@ TEST(false_sizes_are_refused)
         memcpy(compressed + sizeof(right), &size, sizeof(size));
         assert_null(decompress(compressed, bytes, &count));
     }
-    mem_free(compressed);
 }
 
 /* --- files ------------------------------------------------------------------------------------------------------------------------ */
@@ -210,13 +203,12 @@ static bool opens(const struct compress_fixture *f, struct cache_file *file, con
     fflush(stderr);
     dup2(kept, STDERR_FILENO);
     close(kept);
-    char *text = text_read_file(said, 4096, &count);
+    char *text = test_memory(text_read_file(said, 4096, &count));
     assert_non_null(text);
     if (!reason)
         assert_string_equal(text, "");
     else if (!strstr(text, f->path) || !strstr(text, reason))
         fail_msg("the log does not name %s and \"%s\": %s", f->path, reason, text);
-    mem_free(text);
     return good;
 }
 
@@ -232,7 +224,7 @@ CASE(a_file_comes_back_and_is_smaller)
 {
     struct cache_file file;
     struct stat st;
-    uint32_t *words = mem_array(COUNT, sizeof(*words));
+    uint32_t *words = test_memory(mem_array(COUNT, sizeof(*words)));
     fill(words, COUNT);
     write_words(f);
     assert_int_equal(stat(f->path, &st), 0);
@@ -242,7 +234,6 @@ CASE(a_file_comes_back_and_is_smaller)
     assert_int_equal((uintptr_t)file.bytes % 8, 0);
     assert_memory_equal(file.bytes, words, file.count);
     cache_file_close(&file);
-    mem_free(words);
 }
 
 /* A missing cache file, or one of the previous version, is no error and not logged: the caller makes the file again. */
@@ -267,12 +258,11 @@ CASE(a_damaged_or_cut_file_is_refused_with_a_reason)
         struct cache_file file;
         size_t size;
         write_words(f);
-        char *bytes = text_read_file(f->path, 1 << 20, &size);
+        char *bytes = test_memory(text_read_file(f->path, 1 << 20, &size));
         assert_non_null(bytes);
         if (cases[i].flip)
             bytes[cases[i].flip] ^= 4;
         assert_int_equal(atomic_file_put(f->path, bytes, size - cases[i].cut), 0);
-        mem_free(bytes);
         assert_false(opens(f, &file, cases[i].reason));
     }
 }
@@ -281,9 +271,9 @@ CASE(a_damaged_or_cut_file_is_refused_with_a_reason)
 CASE(contents_that_lie_are_refused_with_a_reason)
 {
     size_t bytes;
-    uint32_t *words = mem_array(COUNT, sizeof(*words));
+    uint32_t *words = test_memory(mem_array(COUNT, sizeof(*words)));
     fill(words, COUNT);
-    uint8_t *compressed = compress_one(words, 4 * COUNT, &bytes);
+    uint8_t *compressed = test_memory(compress_one(words, 4 * COUNT, &bytes));
     for (int i = 0; i < 3; i++) {
         struct cache_file file;
         uint8_t *lie = mem_array(bytes, 1);
@@ -298,6 +288,4 @@ CASE(contents_that_lie_are_refused_with_a_reason)
         assert_false(opens(f, &file, i == 2 ? "compressed bytes are damaged" : "do not have the sizes that they state"));
         mem_free(lie);
     }
-    mem_free(compressed);
-    mem_free(words);
 }

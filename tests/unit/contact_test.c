@@ -87,11 +87,10 @@ static size_t score(const char *name, const struct cad *shape, const struct oute
                   100 * mean / count / largest, 100 * worst / largest, hidden, surface_report(surface)->components_after);
     assert_true(mean / count / largest <= MEAN_MAX);
     assert_true(worst / largest <= WORST_MAX);
-    /* the bodies must be connected to one component; not with CAD_FINS, whose additional triangles may lie unconnected between
-       the bodies */
+    /* the bodies must be connected to one component; not with CAD_FINS, whose additional triangles may lie unconnected
+       between the bodies */
     if (fault != CAD_FINS)
         assert_int_equal(surface_report(surface)->components_after, 1);
-    surface_destroy(&surface);
     cad_finish(&broken);
     mem_free(found);
     mem_free(vertex_of);
@@ -127,48 +126,36 @@ static bool is_tried(int row, int fault)
    Vertices inside the union must be reported as hidden, and no other ones. */
 static void test_pair(const char *name, int row, const struct cad *below, const struct cad *above, double gap)
 {
-    struct cad both = { 0 };
+    struct cad *both = test_cad();
     struct outer outer;
-    cad_append(&both, below, (double[3]){ 0 });
-    cad_append(&both, above, (double[3]){ 0 });
-    outer_init(&outer, below, above, &both);
-    for (size_t v = below->vertex_count; v < both.vertex_count; v++)
-        both.positions[v][2] += (float)gap;
+    cad_append(both, below, (double[3]){ 0 });
+    cad_append(both, above, (double[3]){ 0 });
+    outer_init(&outer, below, above, both);
+    for (size_t v = below->vertex_count; v < both->vertex_count; v++)
+        both->positions[v][2] += (float)gap;
     for (int fault = 0; fault < CAD_FAULTS; fault++) {
         if (!is_tried(row, fault))
             continue;
-        size_t hidden = score(name, &both, &outer, (enum cad_fault)fault);
+        size_t hidden = score(name, both, &outer, (enum cad_fault)fault);
         if (fault == CAD_CLEAN)
-            assert_in_range(hidden, covered(&outer, &both) * 9 / 10, covered(&outer, &both));
+            assert_in_range(hidden, covered(&outer, both) * 9 / 10, covered(&outer, both));
     }
     outer_finish(&outer);
-    cad_finish(&both);
-}
-
-/* Skips the test under a sanitizer, because the exact solver would take minutes and is not the code under test. */
-static void skip_if_watched(void)
-{
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-    print_message("# too slow under a sanitizer\n");
-    skip();
-#endif
 }
 
 /* --- face to face ------------------------------------------------------------------------------------------------------------- */
 
 TEST(a_foot_stands_on_a_base)
 {
-    struct cad base = { 0 }, foot = { 0 };
+    struct cad *base = test_cad(), *foot = test_cad();
     double turn = cad_random(&chance);
     skip_if_watched();
-    cad_box(&base, &chance, 40, 40, 6, 0.05);
-    cad_box(&foot, &chance, 13, 11, 20, 0.06);
-    move(&foot, turn, 0.8 + 0.1 * cad_random(&chance), 0.5 + 0.1 * cad_random(&chance), (double)(6 * 0.05f));
-    test_pair("foot on a base", 1, &base, &foot, 0);
-    test_pair("foot just over a base", 2, &base, &foot, 0.0005);
-    test_pair("foot just into a base", 0, &base, &foot, -0.0005);
-    cad_finish(&base);
-    cad_finish(&foot);
+    cad_box(base, &chance, 40, 40, 6, 0.05);
+    cad_box(foot, &chance, 13, 11, 20, 0.06);
+    move(foot, turn, 0.8 + 0.1 * cad_random(&chance), 0.5 + 0.1 * cad_random(&chance), (double)(6 * 0.05f));
+    test_pair("foot on a base", 1, base, foot, 0);
+    test_pair("foot just over a base", 2, base, foot, 0.0005);
+    test_pair("foot just into a base", 0, base, foot, -0.0005);
 }
 
 static void make_flange(struct cad *plate, struct cad *pipe)
@@ -180,12 +167,10 @@ static void make_flange(struct cad *plate, struct cad *pipe)
 
 TEST(a_flange_lies_on_a_plate)
 {
-    struct cad plate = { 0 }, pipe = { 0 };
+    struct cad *plate = test_cad(), *pipe = test_cad();
     skip_if_watched();
-    make_flange(&plate, &pipe);
-    test_pair("flange on a plate", 1, &plate, &pipe, 0);
-    cad_finish(&plate);
-    cad_finish(&pipe);
+    make_flange(plate, pipe);
+    test_pair("flange on a plate", 1, plate, pipe, 0);
 }
 
 /* In some meshes with faults, a gap in one body overlaps a gap in the other, and a vertex at the gap lies exactly on an edge of
@@ -229,24 +214,20 @@ static void make_boxes(struct cad *below, struct cad *above, bool stacked)
    coincide or have different diagonals. */
 TEST(boxes_are_stacked)
 {
-    struct cad below = { 0 }, above = { 0 };
+    struct cad *below = test_cad(), *above = test_cad();
     skip_if_watched();
-    make_boxes(&below, &above, true);
-    test_pair("stacked boxes", 2, &below, &above, 0);
-    cad_finish(&below);
-    cad_finish(&above);
+    make_boxes(below, above, true);
+    test_pair("stacked boxes", 2, below, above, 0);
 }
 
 /* A narrower box stands at the edge of a wider one: three edges of its bottom lie on edges of the wider box and have the same
    vertices. */
 TEST(a_box_stands_at_the_edge_of_another)
 {
-    struct cad below = { 0 }, above = { 0 };
+    struct cad *below = test_cad(), *above = test_cad();
     skip_if_watched();
-    make_boxes(&below, &above, false);
-    test_pair("box at a box's edge", 0, &below, &above, 0);
-    cad_finish(&below);
-    cad_finish(&above);
+    make_boxes(below, above, false);
+    test_pair("box at a box's edge", 0, below, above, 0);
 }
 
 struct contact_case {
@@ -332,7 +313,6 @@ TEST(nothing_stays_open_where_vertices_hang)
         cad_put(&broken, &place);
         struct surface *surface = surface_of(&broken);
         assert_int_equal(surface_report(surface)->border_edges_after, 0);
-        surface_destroy(&surface);
         cad_finish(&below);
         cad_finish(&above);
         cad_finish(&both);
@@ -347,23 +327,20 @@ TEST(nothing_stays_open_where_vertices_hang)
 
 TEST(a_tube_passes_through_itself)
 {
-    struct cad tube = { 0 }, up = { 0 }, down = { 0 };
+    struct cad *tube = test_cad(), *up = test_cad(), *down = test_cad();
     struct outer outer;
     /* radius of the tube; the centre line's sharpest bend has a radius of 0.178, at which a thicker tube would fold */
     double radius = 0.12 + 0.05 * cad_random(&chance);
     skip_if_watched();
-    cad_eight(&tube, &chance, 150, 36, radius, 0);
-    cad_eight(&up, &chance, 150, 36, radius, 1);
-    cad_eight(&down, &chance, 150, 36, radius, 2);
-    outer_init(&outer, &up, &down, &tube);
+    cad_eight(tube, &chance, 150, 36, radius, 0);
+    cad_eight(up, &chance, 150, 36, radius, 1);
+    cad_eight(down, &chance, 150, 36, radius, 2);
+    outer_init(&outer, up, down, tube);
     for (int fault = 0; fault < CAD_FAULTS; fault++)
         if (is_tried(2, fault))
-            assert_in_range(score("tube through itself", &tube, &outer, (enum cad_fault)fault), covered(&outer, &tube) * 9 / 10,
-                            covered_corners(&outer, &tube));
+            assert_in_range(score("tube through itself", tube, &outer, (enum cad_fault)fault), covered(&outer, tube) * 9 / 10,
+                            covered_corners(&outer, tube));
     outer_finish(&outer);
-    cad_finish(&tube);
-    cad_finish(&up);
-    cad_finish(&down);
 }
 
 TEST_GROUP(surface_case_set_up, surface_case_tear_down)

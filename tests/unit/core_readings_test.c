@@ -161,7 +161,7 @@ TEST(differences_have_names)
     const struct core_identity own = { "1.0", "Plant", "abc" };
     const struct core_identity others[] = { { "1.1", "Plant", "abc" }, { "1.0", "P", "abc" }, { "1.0", "Plant", "x" } };
     const char *const names[] = { "version", "plant", "configuration" };
-    json_t *message = core_identity_message("core", &own);
+    json_t *message = test_json(core_identity_message("core", &own));
     assert_null(core_identity_difference(message, "core", &own));
     for (int i = 0; i < 3; i++) {
         char *why = core_identity_difference(message, "core", &others[i]);
@@ -172,5 +172,4 @@ TEST(differences_have_names)
     char *why = core_identity_difference(message, "core", &own);
     assert_string_equal(why, "the core does not send its plant");
     mem_free(why);
-    json_decref(message);
 }

@@ -84,11 +84,10 @@ TEST(a_pipe_that_winds_into_itself_has_some)
 {
     struct crossing_model *model = mem_new(sizeof(*model));
     make_coil(model, 0.2, 0.3, 1.25); /* the coil's last quarter turn overlaps its first */
-    char *crosses = crossing_faces_find(&model->parts);
+    char *crosses = test_memory(crossing_faces_find(&model->parts));
     assert_in_range(count_flagged(model, crosses), 20, model->triangle_count / 2);
     for (size_t t = model->triangle_count * 2 / 5; t < model->triangle_count * 3 / 5; t++)
         assert_int_equal(crosses[t], 0);
-    mem_free(crosses);
     model_finish(model);
     mem_free(model);
 }
@@ -146,7 +145,7 @@ TEST(no_crossing_of_pieces_is_missed)
     size_t found = 0, flagged = 0, all = 0;
     for (int n = 0; n < sweep(400, 60); n++) {
         make_tangle(model, (uint32_t)between(5, 40), pow(10, between(-6, 0)));
-        char *crosses = crossing_faces_find(&model->parts);
+        char *crosses = test_memory(crossing_faces_find(&model->parts));
         trimesh_sample(&model->mesh, between(0.15, 0.6), 4000);
         flagged += count_flagged(model, crosses);
         all += model->triangle_count;
@@ -155,7 +154,6 @@ TEST(no_crossing_of_pieces_is_missed)
             found += crossings;
             assert_true(crossings == 0 || (crosses && crosses[model->mesh.tri_source[t]]));
         }
-        mem_free(crosses);
         model_finish(model);
     }
     print_message("# %zu crossings; %zu of %zu faces may cross\n", found, flagged, all);

@@ -36,8 +36,7 @@ static int set_up(void **state)
     boxes_add(&maker, "apart-2", (const double[3]){ 11.5, 0, 0 }, (const double[3]){ 12, 1, 1 });
     boxes_add(&maker, "inside-1", (const double[3]){ 20, 0, 0 }, (const double[3]){ 24, 4, 4 });
     boxes_add(&maker, "inside-2", (const double[3]){ 21, 1, 1 }, (const double[3]){ 22, 2, 2 });
-    boxes_write(&maker, c->folder, "model.glb");
-    maker_finish(&maker);
+    maker_write(&maker, c->folder, "model.glb");
     prep_case_plant(c, plant_text);
     prep_case_tags(c, tags_rows);
     return 0;

@@ -230,7 +230,7 @@ TEST(the_ground_is_behind_surfaces)
     for (int y = 0; y < 64; y++)
         for (int x = 0; x < 12; x++)
             picture.depth[y * 64 + x] = 0.9f;
-    struct depth_cell *cells = cells_of(&picture, &lens);
+    struct depth_cell *cells = test_memory(cells_of(&picture, &lens));
     struct depth_grid *grid = depth_grid_create(cells, &lens, 64, 64);
     struct depth_read read;
     assert_true(depth_read_init(&read, grid));
@@ -243,7 +243,6 @@ TEST(the_ground_is_behind_surfaces)
     assert_true(read.near[7 * 8 + 2] == 0 && read.far[7 * 8 + 1] == 0);
     depth_read_finish(&read);
     depth_grid_unref(&grid);
-    mem_free(cells);
     mem_free(picture.depth);
 }
 

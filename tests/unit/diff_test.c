@@ -66,8 +66,7 @@ static void write_model(struct prep_case *c, bool is_new)
     maker_node(&maker, "TT-1", -1, json_pack("{s:[fff]}", "translation", 11.0, is_new ? 2.5 : 0.5, 0.5));
     if (!is_new)
         maker_node(&maker, "TT-2", -1, json_pack("{s:[fff]}", "translation", 1.0, 0.5, 0.5));
-    boxes_write(&maker, c->folder, is_new ? "new.glb" : "old.glb");
-    maker_finish(&maker);
+    maker_write(&maker, c->folder, is_new ? "new.glb" : "old.glb");
 }
 
 static int set_up(void **state)
@@ -202,16 +201,9 @@ CASE(nothing_lost_is_no_error)
 CASE(levels_are_no_change)
 {
     struct cad_random chance = { 1 };
-    struct cad ball = { 0 };
-    struct model_maker maker;
-    cad_sphere(&ball, &chance, 20);
-    maker_init(&maker);
-    int at = maker_numbers(&maker, ball.positions, 12 * ball.vertex_count, FLOAT, ball.vertex_count, "VEC3");
-    int list = maker_numbers(&maker, ball.triangles, 12 * ball.triangle_count, UINT, 3 * ball.triangle_count, "SCALAR");
-    maker_node(&maker, "BALL", maker_mesh(&maker, json_pack("{s:{s:i},s:i}", "attributes", "POSITION", at, "indices", list)), NULL);
-    boxes_write(&maker, c->folder, "ball.glb");
-    maker_finish(&maker);
-    cad_finish(&ball);
+    struct cad *ball = test_cad();
+    cad_sphere(ball, &chance, 20);
+    maker_write_cad(c->folder, "ball.glb", "BALL", ball);
     write_plant(c, "ball", ASSET("BALL", "ball.glb", ""), "T-1,400001,Float,plc,temperature,BALL,,1,0,0\n");
     prep_case_expect(c, "$FOLDER/ball.yaml --report json", 0);
     json_t *report = prep_case_json(&c->out);

@@ -14,14 +14,10 @@ static const double LENGTH_M = 3, MOVED_M[3] = { 10, -20, 5 };
    of vertices. */
 static size_t write_cylinder(struct prep_case *c, struct cad_random *random)
 {
-    struct cad cad = { 0 };
-    size_t size;
-    cad_cylinder(&cad, random, AROUND, ALONG, LENGTH_M, 0.5);
-    char *glb = maker_glb_of(&cad, "cylinder", &size);
-    temp_write(c->folder, "model.glb", glb, size);
-    mem_free(glb);
-    size_t vertices = cad.vertex_count;
-    cad_finish(&cad);
+    struct cad *cad = test_cad();
+    cad_cylinder(cad, random, AROUND, ALONG, LENGTH_M, 0.5);
+    maker_write_cad(c->folder, "model.glb", "cylinder", cad);
+    size_t vertices = cad->vertex_count;
     return vertices;
 }
 
@@ -69,16 +65,15 @@ TEST_WITH(round_a_cylinder, prep_case_set_up, prep_case_tear_down)
     cad_random_start(&random);
     size_t vertices = write_cylinder(c, &random);
     const double sensors[2][2] = { { 6.283 * cad_random(&random), LENGTH_M * (0.1 + 0.8 * cad_random(&random)) }, { 0.3, 0 } };
-    struct text tags = { 0 };
+    struct text *tags = test_text();
     for (int i = 0; i < 2; i++)
-        text_add(&tags, "T%d,%d,Float,plc,t,A,,%.6f,%.6f,%.6f\n", i + 1, 400001 + 2 * i, MOVED_M[0] + cos(sensors[i][0]),
+        text_add(tags, "T%d,%d,Float,plc,t,A,,%.6f,%.6f,%.6f\n", i + 1, 400001 + 2 * i, MOVED_M[0] + cos(sensors[i][0]),
                  MOVED_M[1] + sin(sensors[i][0]), MOVED_M[2] + sensors[i][1]);
     prep_case_plant(c, "plant: { name: Cylinder }\n"
                        "assets: [{ id: A, model: model.glb, up: z, placement: { translate: [10, -20, 5] } }]\n"
                        "groups: [{ id: t, unit: K, min: 0, max: 1 }]\n"
                        "sources: [{ id: plc, type: modbus, host: 127.0.0.1, byte_order: CDAB, address_base: 1 }]\ntags: tags.csv\n");
-    prep_case_tags(c, tags.at);
+    prep_case_tags(c, tags->at);
     for (int i = 0; i < 2; i++)
         check(c, i ? "T2" : "T1", sensors[i], vertices);
-    text_finish(&tags);
 }

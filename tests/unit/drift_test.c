@@ -5,10 +5,10 @@
 #include "tests/support/test.h"
 
 #include "base/log/log.h"
+#include "base/math/search.h"
 #include "field/drift.h"
 #include "scene/scene_create.h"
 #include "tests/support/cad.h"
-#include "tests/support/measure.h"
 #include "tests/support/model_maker.h"
 #include "tests/support/prep_case.h"
 
@@ -64,7 +64,7 @@ static double slow_change(const double *values, const double *predicted, const d
     for (int h = 0; h < hours; h++)
         if (isfinite(values[h]))
             changes[known++] = change_at(predicted, hours, h);
-    qsort(changes, (size_t)known, sizeof(*changes), by_size);
+    qsort(changes, (size_t)known, sizeof(*changes), compare_doubles);
     double usual = (changes[(known - 1) / 2] + changes[known / 2]) / 2;
     for (int h = 0; h < hours; h++) {
         lagging += h > 0 ? (predicted[h] - lagging) / 12 : 0;
@@ -270,15 +270,11 @@ struct row_of_sensors {
 static void stand_sensors(struct prep_case *c, int count, struct row_of_sensors *out)
 {
     struct cad_random random;
-    struct cad cad = { 0 };
-    struct text rows = { 0 };
-    size_t size;
+    struct cad *cad = test_cad();
+    struct text *rows = test_text();
     cad_random_start(&random);
-    cad_plate(&cad, &random, 24, 3, 2.4, 0.3, 0);
-    char *glb = maker_glb_of(&cad, "strip", &size);
-    temp_write(c->folder, "model.glb", glb, size);
-    mem_free(glb);
-    cad_finish(&cad);
+    cad_plate(cad, &random, 24, 3, 2.4, 0.3, 0);
+    maker_write_cad(c->folder, "model.glb", "strip", cad);
     prep_case_plant(c, "plant: { name: Strip }\n"
                        "assets:\n"
                        "  - { id: S, model: model.glb, up: z }\n"
@@ -288,15 +284,13 @@ static void stand_sensors(struct prep_case *c, int count, struct row_of_sensors 
                        "  - { id: plc, type: modbus, host: 127.0.0.1, byte_order: ABCD, address_base: 1 }\n"
                        "tags: tags.csv\n");
     for (int i = 0; i < count; i++)
-        text_add(&rows, "T%d,%d,Float,plc,temperature,S,,%g,0.15,0\n", i, 400001 + 2 * i, 0.4 + 0.4 * i);
-    prep_case_tags(c, rows.at);
-    text_finish(&rows);
+        text_add(rows, "T%d,%d,Float,plc,temperature,S,,%g,0.15,0\n", i, 400001 + 2 * i, 0.4 + 0.4 * i);
+    prep_case_tags(c, rows->at);
     prep_case_expect(c, "$PLANT", 0);
     out->plant = plant_load_or_print(c->plant);
     assert_non_null(out->plant);
-    char *prepared = plant_prepared_folder(out->plant);
+    char *prepared = test_memory(plant_prepared_folder(out->plant));
     out->scene = scene_create(test_log(), out->plant, prepared);
-    mem_free(prepared);
     assert_non_null(out->scene);
     out->neighbours = neighbours_create(out->scene, 0, 0);
     assert_non_null(out->neighbours);

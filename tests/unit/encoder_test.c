@@ -130,7 +130,7 @@ static size_t head_of(const uint8_t *bytes, size_t count)
    keep more of their colour than with libjpeg-turbo's own tables. */
 TEST(jpeg_keeps_the_colour_of_thin_things)
 {
-    struct frame *frame = thin_lines(320, 200);
+    struct frame *frame = test_frame(thin_lines(320, 200));
     tjhandle turbo = tjInitCompress();
     for (int quality = 66; quality <= 80; quality += 14) {
         unsigned char *bytes = NULL;
@@ -149,7 +149,6 @@ TEST(jpeg_keeps_the_colour_of_thin_things)
         tjFree(bytes);
     }
     tjDestroy(turbo);
-    frame_unref(&frame);
 }
 
 /* Decodes the parts of a packet into bgr, which holds the whole frame. */
@@ -172,10 +171,10 @@ TEST(jpeg_sends_only_what_changed)
 {
     struct log *log = test_log();
     struct encoder *encoder = encoder_create(log, "jpeg", NULL);
-    struct frame *before = gradient(640, 360), *now = gradient(640, 360);
+    struct frame *before = test_frame(gradient(640, 360)), *now = test_frame(gradient(640, 360));
     struct encoder_params params = { .quality = 95, .full_chroma = true };
     struct packet *whole, *change;
-    uint8_t *bgr = mem_array(640 * 360, 3);
+    uint8_t *bgr = test_memory(mem_array(640 * 360, 3));
     for (size_t y = 40; y < 60; y++) {
         memset(now->bgrx + y * (size_t)now->stride_bytes + 100 * 4, 180, 30 * 4);
         memset(now->bgrx + (y + 250) * (size_t)now->stride_bytes + 600 * 4, 90, 30 * 4);
@@ -206,34 +205,28 @@ TEST(jpeg_sends_only_what_changed)
     assert_true(change->key);
     packet_unref(&change);
     packet_unref(&whole);
-    frame_unref(&before);
-    frame_unref(&now);
     encoder_destroy(&encoder);
-    mem_free(bgr);
 }
 
 TEST(png_keeps_every_pixel)
 {
-    struct frame *frame = gradient(123, 45);
+    struct frame *frame = test_frame(gradient(123, 45));
     struct packet *packet = encode("png", frame, 0, false);
     png_image image = { .version = PNG_IMAGE_VERSION };
     assert_int_equal(packet->codec, WIRE_CODEC_PNG);
     assert_true(png_image_begin_read_from_memory(&image, packet->bytes, packet->count));
     image.format = PNG_FORMAT_BGR;
-    uint8_t *bgr = mem_array(PNG_IMAGE_SIZE(image), 1);
+    uint8_t *bgr = test_memory(mem_array(PNG_IMAGE_SIZE(image), 1));
     assert_true(image.width == 123 && image.height == 45);
     assert_true(png_image_finish_read(&image, NULL, bgr, 0, NULL));
     assert_true(worst_difference(frame, bgr, -1) == 0);
-    mem_free(bgr);
     packet_unref(&packet);
-    frame_unref(&frame);
 }
 
 TEST(packets_outlive_frames_without_their_pixels)
 {
-    struct frame *frame = gradient(64, 64);
+    struct frame *frame = test_frame(gradient(64, 64));
     struct packet *packet = encode("jpeg", frame, 80, false), *second = packet_ref(packet);
-    frame_unref(&frame);
     assert_null(packet->frame->bgrx);
     assert_int_equal(packet->frame->width_px, 64);
     assert_true(packet->frame->marker_count == 1 && packet->frame->markers[0].tag == 3 && packet->frame->markers[0].x_px == 1.5f);

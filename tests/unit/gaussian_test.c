@@ -73,7 +73,6 @@ static void finish(struct gaussian_case *s)
     influence_finish(&s->influence);
     influence_mesh_finish(&s->mesh);
     mem_free(s->anchors);
-    surface_destroy(&s->surface);
     cad_finish(&s->shape);
 }
 

@@ -44,28 +44,18 @@ static struct {
 
 static int make_plant(void **state)
 {
-    struct cad torus = { 0 };
+    struct cad *torus = test_cad();
     struct cad_random chance = { 3 };
     struct model_maker maker;
-    size_t size;
     prep_case_set_up(state);
     struct prep_case *c = made.c = *state;
-    cad_torus(&torus, &chance, AROUND, TUBE, 0.3, 0.4);
-    assert_true(torus.triangle_count >= GEOMETRY_CACHE_TRIANGLES);
+    cad_torus(torus, &chance, AROUND, TUBE, 0.3, 0.4);
+    assert_true(torus->triangle_count >= GEOMETRY_CACHE_TRIANGLES);
     maker_init(&maker);
-    int positions =
-        maker_numbers(&maker, torus.positions, torus.vertex_count * sizeof(*torus.positions), FLOAT, torus.vertex_count, "VEC3");
-    int indices = maker_numbers(&maker, torus.triangles, torus.triangle_count * 3 * sizeof(*torus.triangles), UINT,
-                                torus.triangle_count * 3, "SCALAR");
-    int mesh = maker_mesh(&maker, json_pack("{s:{s:i},s:i}", "attributes", "POSITION", positions, "indices", indices));
-    maker_node(&maker, "torus", mesh, NULL);
+    maker_cad(&maker, "torus", torus);
     maker_node(&maker, "TT-1", -1, json_pack("{s:[f,f,f]}", "translation", 0.0, -1.3, 0.0));
     maker_node(&maker, "TT-2", -1, json_pack("{s:[f,f,f]}", "translation", 0.9, -0.9, 0.1));
-    char *glb = maker_glb(&maker, &size);
-    temp_write(c->folder, "model.glb", glb, size);
-    mem_free(glb);
-    maker_finish(&maker);
-    cad_finish(&torus);
+    maker_write(&maker, c->folder, "model.glb");
     return 0;
 }
 
@@ -140,13 +130,12 @@ static size_t prepare_fresh(struct prep_case *c, const char *tags)
     assert_in_range(i, 0, sizeof(made.fresh) / sizeof(*made.fresh) - 1);
     json_t *fresh = prepare(c, tags, "fresh", &model_read);
     assert_true(model_read);
-    char *path = path_of(c, "fresh", fresh);
+    char *path = test_memory(path_of(c, "fresh", fresh));
     made.fresh[i].tags = mem_strdup(tags);
     made.fresh[i].bytes = text_read_file(path, (size_t)1 << 30, &made.fresh[i].size);
     made.fresh[i].levels = json_deep_copy(json_object_get(fresh, "levels"));
     assert_non_null(made.fresh[i].bytes);
     made.fresh_count++;
-    mem_free(path);
     in_folder(c, "rm -r fresh");
     return i;
 }
@@ -155,13 +144,11 @@ static size_t prepare_fresh(struct prep_case *c, const char *tags)
 static void assert_as_fresh(struct prep_case *c, const char *tags, const json_t *found)
 {
     size_t i = prepare_fresh(c, tags), size;
-    char *path = path_of(c, "kept", found), *bytes = text_read_file(path, (size_t)1 << 30, &size);
+    char *path = test_memory(path_of(c, "kept", found)), *bytes = test_memory(text_read_file(path, (size_t)1 << 30, &size));
     assert_non_null(bytes);
     assert_int_equal(size, made.fresh[i].size);
     assert_memory_equal(bytes, made.fresh[i].bytes, size);
     assert_true(json_equal(made.fresh[i].levels, json_object_get(found, "levels")));
-    mem_free(bytes);
-    mem_free(path);
 }
 
 /* While a group has a single sensor, distances do not matter and are not checked against the heat method. Once a second sensor
@@ -215,13 +202,12 @@ CASE(a_changed_sensor_costs_its_own_distances)
 /* Returns the path of the only file in the folder with this suffix. */
 static char *kept_file(const struct prep_case *c, const char *ending)
 {
-    char path[400] = "", *command = mem_printf("ls '%s'/kept/*%s", c->folder, ending);
+    char path[400] = "", *command = test_printf("ls '%s'/kept/*%s", c->folder, ending);
     FILE *names = popen(command, "r");
     assert_non_null(names);
     assert_non_null(fgets(path, sizeof(path), names));
     assert_true(feof(names) || fgetc(names) == EOF);
     pclose(names);
-    mem_free(command);
     path[strcspn(path, "\n")] = 0;
     return mem_strdup(path);
 }
@@ -229,14 +215,13 @@ static char *kept_file(const struct prep_case *c, const char *ending)
 static void damage(const char *path, bool cut)
 {
     size_t size;
-    char *bytes = text_read_file(path, (size_t)1 << 30, &size);
+    char *bytes = test_memory(text_read_file(path, (size_t)1 << 30, &size));
     assert_non_null(bytes);
     /* changes a byte in each eighth of the file, which damages each part of a cached mesh, and the distances of each cached
        sensor (its record has 32 bytes before them) */
     for (size_t i = size / 8 + 40; i < size; i += size / 8)
         bytes[i] ^= 4;
     assert_int_equal(atomic_file_put(path, bytes, cut ? size / 3 : size), 0);
-    mem_free(bytes);
 }
 
 CASE(what_is_damaged_is_made_anew)
@@ -245,7 +230,7 @@ CASE(what_is_damaged_is_made_anew)
         char *tags = test_printf("a,,,,t,A,,1.3,0,0.0%d\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n", cut ? 5 : 2);
         bool model_read;
         prepare_first(c);
-        char *stock = kept_file(c, cut ? ".surface" : ".stock"), *columns = kept_file(c, ".columns");
+        char *stock = test_memory(kept_file(c, cut ? ".surface" : ".stock")), *columns = test_memory(kept_file(c, ".columns"));
         damage(stock, cut);
         damage(columns, cut);
         json_t *asset = prepare(c, tags, "kept", &model_read);
@@ -256,8 +241,6 @@ CASE(what_is_damaged_is_made_anew)
         assert_int_equal(number(asset, "stocked"), 0);
         assert_in_range(number(asset, "kept_sensors"), 0, cut ? 1 : 0);
         assert_as_fresh(c, tags, asset);
-        mem_free(stock);
-        mem_free(columns);
     }
 }
 
@@ -319,7 +302,7 @@ CASE(points_are_found_once)
     static const char *const places[] = { "1.3,0,0.02", "1.3,0,0.05", "0.8,0.8,0" };
     bool model_read;
     prepare_first(c);
-    char *spots = kept_file(c, ".spots");
+    char *spots = test_memory(kept_file(c, ".spots"));
     for (int i = 0; i < 3; i++) {
         char *tags = test_printf("a,,,,t,A,,%s\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,TT-1,,,\n", places[i]);
         if (i)
@@ -332,7 +315,6 @@ CASE(points_are_found_once)
         assert_true((file_number(spots) == before) == (i == 0));
         assert_as_fresh(c, tags, asset);
     }
-    mem_free(spots);
 }
 
 /* --- killed midway ------------------------------------------------------------------------------------------------------------ */
@@ -416,7 +398,7 @@ CASE(without_room_the_old_file_stays)
     static const char tags[] = "a,,,,t,A,,1.3,0,0\nb,,,,t,A,,-1.3,0,0\nc,,,,p,A,,0,1,0.3\nd,,,,t,A,,0.1,-1.2,0\n";
     bool model_read;
     json_t *first = prepare_first(c);
-    char *before = path_of(c, "kept", first), *columns = kept_file(c, ".columns");
+    char *before = test_memory(path_of(c, "kept", first)), *columns = test_memory(kept_file(c, ".columns"));
     char *drafts = test_printf("ls '%s'/kept | grep -q asset.*new", c->folder);
     char *names_folder = test_printf("grep -q 'cannot be written to %s/kept: File too large' '%s'/said", c->folder, c->folder);
     size_t size = bytes_of(before);
@@ -428,17 +410,15 @@ CASE(without_room_the_old_file_stays)
     assert_int_equal(system(names_folder), 0);
     json_t *asset = prepare(c, tags, "kept", &model_read);
     assert_as_fresh(c, tags, asset);
-    mem_free(before);
-    mem_free(columns);
 }
 
 CASE(what_nothing_needs_any_more_is_removed)
 {
     bool model_read;
     prepare_first(c);
-    char *stock = kept_file(c, ".stock"), *surface = kept_file(c, ".surface"), *columns = kept_file(c, ".columns");
-    char *spots = kept_file(c, ".spots");
-    char *other = mem_strdup(plant_text);
+    char *stock = kept_file(c, ".stock"), *surface = test_memory(kept_file(c, ".surface")), *columns = kept_file(c, ".columns");
+    char *spots = test_memory(kept_file(c, ".spots"));
+    char *other = test_memory(mem_strdup(plant_text));
     memcpy(strstr(other, "up: z"), "up: y", 5);
     prep_case_plant(c, other);
     prepare(c, "a,,,,t,A,,1.3,0,0\n", "kept", &model_read);
@@ -447,11 +427,8 @@ CASE(what_nothing_needs_any_more_is_removed)
     assert_int_not_equal(access(surface, F_OK), 0);
     assert_int_not_equal(access(columns, F_OK), 0);
     assert_int_not_equal(access(spots, F_OK), 0);
-    mem_free(spots);
-    mem_free(surface);
     mem_free(stock);
     mem_free(columns);
-    mem_free(other);
 }
 
 /* --- among many sensors ------------------------------------------------------------------------------------------------------- */
@@ -590,13 +567,12 @@ CASE(one_of_many_sensors_is_split_for_alone)
     const int moves = sweep(3, 2);
     int first_found = 0;
     for (int move = 0; move < moves; move++) {
-        char *tags = many_tags(move);
+        char *tags = test_memory(many_tags(move));
         /* before the second move, a run is killed while it writes its cache of measured triangles; the next run must give the
            same result */
         if (move == 1) {
-            char *findings = kept_file(c, ".splitting");
+            char *findings = test_memory(kept_file(c, ".splitting"));
             prepare_killed_at(c, tags, bytes_of(findings) / 2);
-            mem_free(findings);
         }
         json_t *found = prepare(c, tags, "kept", &model_read);
         int measured = number(found, "split_measured"), kept = number(found, "split_kept");
@@ -616,7 +592,6 @@ CASE(one_of_many_sensors_is_split_for_alone)
                 assert_shows_as_anew(c, &moved, tags, "fresh");
             close_prepared(&moved);
         }
-        mem_free(tags);
     }
 }
 
@@ -624,34 +599,32 @@ CASE(one_of_many_sensors_is_split_for_alone)
 
 TEST(a_surface_comes_back_whole)
 {
-    struct cad torus = { 0 };
+    struct cad *torus = test_cad();
     struct cad_random chance = { 9 };
-    struct text packed = { 0 };
+    struct text *packed = test_text();
     const double source[1][3] = { { 1.2, 0.3, 0.1 } };
-    cad_torus(&torus, &chance, 40, 20, 0.3, 0.5);
-    torus.triangles[3] = torus.triangles[4]; /* a triangle without area */
-    struct surface *surface = surface_create(NULL, NULL, (const float(*)[3])torus.positions, torus.vertex_count, torus.triangles,
-                                             torus.triangle_count, &(struct surface_params){ 0 });
-    float *before_m = mem_array(torus.vertex_count, sizeof(*before_m)), *after_m = mem_array(torus.vertex_count, sizeof(*after_m));
+    cad_torus(torus, &chance, 40, 20, 0.3, 0.5);
+    torus->triangles[3] = torus->triangles[4]; /* a triangle without area */
+    struct surface *surface = surface_create(NULL, NULL, (const float(*)[3])torus->positions, torus->vertex_count, torus->triangles,
+                                             torus->triangle_count, &(struct surface_params){ 0 });
+    float *before_m = mem_array(torus->vertex_count, sizeof(*before_m)), *after_m = mem_array(torus->vertex_count, sizeof(*after_m));
     assert_true(surface_distances(surface, source, 1, before_m));
-    surface_pack(surface, &packed);
-    struct unpack from = { .at = packed.at, .left = packed.length };
+    surface_pack(surface, packed);
+    struct unpack from = { .at = packed->at, .left = packed->length };
     struct surface *back = surface_unpack(&from, NULL, NULL);
     assert_non_null(back);
     assert_int_equal(from.left, 0);
     assert_true(surface_distances(back, source, 1, after_m));
-    assert_memory_equal(before_m, after_m, torus.vertex_count * sizeof(*before_m));
+    assert_memory_equal(before_m, after_m, torus->vertex_count * sizeof(*before_m));
     assert_memory_equal(surface_report(surface), surface_report(back), sizeof(struct surface_report));
     surface_destroy(&back);
-    for (size_t cut = 1; cut < packed.length; cut += packed.length / 37) {
-        from = (struct unpack){ .at = packed.at, .left = packed.length - cut };
+    for (size_t cut = 1; cut < packed->length; cut += packed->length / 37) {
+        from = (struct unpack){ .at = packed->at, .left = packed->length - cut };
         assert_null(surface_unpack(&from, NULL, NULL));
     }
     surface_destroy(&surface);
-    text_finish(&packed);
     mem_free(before_m);
     mem_free(after_m);
-    cad_finish(&torus);
 }
 
 TEST_GROUP(make_plant, remove_plant)

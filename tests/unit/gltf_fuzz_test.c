@@ -17,15 +17,13 @@ TEST(seeds_and_their_changes_keep_the_promises)
 
 static int write_seeds(const char *to)
 {
-    struct wavy_sheet sheet;
-    sheet_init(&sheet, 2, 2);
+    struct wavy_sheet sheet = sheet_create(2, 2);
     for (int i = 0; i < SEED_COUNT; i++) {
         struct seed seed;
         seed_make(&seed, i, &sheet);
         temp_write(to, seed.name, seed.bytes, seed.size);
         mem_free(seed.bytes);
     }
-    sheet_finish(&sheet);
     return 0;
 }
 

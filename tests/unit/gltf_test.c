@@ -75,9 +75,8 @@ static const struct bin bin = {
 static void load(struct gltf_case *l, const char *json)
 {
     size_t size;
-    char *bytes = glb_build(json, &bin, sizeof(bin), &size);
+    char *bytes = test_memory(glb_build(json, &bin, sizeof(bin), &size));
     gltf_case_load(l, "model.glb", bytes, size);
-    mem_free(bytes);
 }
 
 static void good(struct gltf_case *l, const char *json)
@@ -211,13 +210,12 @@ CASE(wrong_trees_are_refused)
             "node 2 'shared' is part of a cycle or has two parents");
     refused(l, HEAD "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"children\":[9]}]," MESH(SQUARE) ACCESSORS "}", "there is no node 9");
     refused(l, HEAD "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":4}]," MESH(SQUARE) ACCESSORS "}", "there is no mesh 4");
-    struct text deep = { 0 };
-    text_add(&deep, HEAD "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[");
+    struct text *deep = test_text();
+    text_add(deep, HEAD "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[");
     for (int i = 0; i < 1000; i++)
-        text_add(&deep, "{\"children\":[%d]},", i + 1);
-    text_add(&deep, "{}]," MESH(SQUARE) ACCESSORS "}");
-    refused(l, deep.at, "nested deeper than 512 levels");
-    text_finish(&deep);
+        text_add(deep, "{\"children\":[%d]},", i + 1);
+    text_add(deep, "{}]," MESH(SQUARE) ACCESSORS "}");
+    refused(l, deep->at, "nested deeper than 512 levels");
 }
 
 CASE(unknown_extensions_are_refused)
@@ -236,13 +234,12 @@ CASE(unknown_extensions_are_refused)
 CASE(broken_files_are_refused)
 {
     size_t size;
-    char *bytes = glb_build(HEAD PLAIN_NODES MESH(SQUARE) ACCESSORS "}", &bin, sizeof(bin), &size);
+    char *bytes = test_memory(glb_build(HEAD PLAIN_NODES MESH(SQUARE) ACCESSORS "}", &bin, sizeof(bin), &size));
     for (size_t cut = 0; cut < size; cut += 1 + cut / 16) { /* everything but the whole file */
         gltf_case_load(l, "cut.glb", bytes, cut);
         if (l->good || !l->why[0])
             fail_msg("the first %zu bytes of %zu: %s", cut, size, l->good ? "accepted" : "refused without a reason");
     }
-    mem_free(bytes);
     refused(l, "{\"asset\":{\"version\":\"2.0\"},,}", "JSON: line 1");
     refused(l, "[1]", "the top-level value is not an object");
     refused(l,
@@ -250,12 +247,11 @@ CASE(broken_files_are_refused)
             "\"byteLength\":9}]}",
             "bufferView 0: bytes 300+9 lie outside the buffer of 308 bytes");
     refused(l, "{\"asset\":{\"version\":\"2.0\"},\"bufferViews\":[{\"buffer\":-1,\"byteLength\":9}]}", "there is no buffer -1");
-    struct text deep = { 0 };
-    text_add(&deep, "{\"extras\":");
+    struct text *deep = test_text();
+    text_add(deep, "{\"extras\":");
     for (int i = 0; i < 200000; i++)
-        text_add(&deep, "[");
-    refused(l, deep.at, "nested deeper");
-    text_finish(&deep);
+        text_add(deep, "[");
+    refused(l, deep->at, "nested deeper");
     gltf_case_load(l, "text.glb", "hello", 5);
     assert_false(l->good);
 }
@@ -290,25 +286,6 @@ CASE(files_outside_the_folder_are_refused)
 
 /* --- cutting assets ------------------------------------------------------------------------------------------------------- */
 
-static struct geometry cut(struct gltf_case *l, const struct geometry_params *params)
-{
-    struct geometry g;
-    char why[MODEL_WHY_BYTES];
-    if (!geometry_cut(&g, &l->model, params, why))
-        fail_msg("%s", why);
-    return g;
-}
-
-static void face_normal(const struct geometry *g, uint32_t tri, float out[3])
-{
-    const float *a = g->positions_m[g->indices[3 * tri]], *b = g->positions_m[g->indices[3 * tri + 1]],
-                *c = g->positions_m[g->indices[3 * tri + 2]];
-    float ab[3] = { b[0] - a[0], b[1] - a[1], b[2] - a[2] }, ac[3] = { c[0] - a[0], c[1] - a[1], c[2] - a[2] };
-    out[0] = ab[1] * ac[2] - ab[2] * ac[1];
-    out[1] = ab[2] * ac[0] - ab[0] * ac[2];
-    out[2] = ab[0] * ac[1] - ab[1] * ac[0];
-}
-
 #define FACILITY                                                                                                                           \
     HEAD "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"name\":\"site\",\"children\":[1,2,4]},{\"name\":\"P-101A\",\"mesh\":0},"              \
          "{\"name\":\"P-101B\",\"mesh\":0,\"translation\":[10,0,0],\"children\":[3]},{\"name\":\"P-101B/"                                  \
@@ -318,18 +295,16 @@ static void face_normal(const struct geometry *g, uint32_t tri, float out[3])
 CASE(nodes_are_chosen_by_pattern_and_taken_once)
 {
     good(l, FACILITY);
-    struct geometry g = cut(l, &(struct geometry_params){ .nodes = "P-101*", .unit_m = 1, .up = AXIS_Z });
+    const struct geometry *g = gltf_case_cut(l, "P-101*", 1, AXIS_Z);
     /* the node "P-101B/seal" lies below "P-101B": both match the pattern, but its triangles must be taken only once */
-    assert_int_equal(g.primitive_count, 3);
-    assert_string_equal(g.names.at + g.primitives[2].name, "P-101B/seal");
-    geometry_finish(&g);
-    g = cut(l, &(struct geometry_params){ .nodes = "E-7", .unit_m = 1, .up = AXIS_Z });
-    assert_float_equal(g.origin_m[0], 1000000.5, 0);
+    assert_int_equal(g->primitive_count, 3);
+    assert_string_equal(g->names.at + g->primitives[2].name, "P-101B/seal");
+    g = gltf_case_cut(l, "E-7", 1, AXIS_Z);
+    assert_float_equal(g->origin_m[0], 1000000.5, 0);
     /* coordinates of a million metres lose no precision: positions are stored relative to the asset's origin */
-    assert_float_equal(g.positions_m[0][0], -0.5, 0);
-    geometry_finish(&g);
+    assert_float_equal(g->positions_m[0][0], -0.5, 0);
     char why[MODEL_WHY_BYTES];
-    assert_false(geometry_cut(&g, &l->model, &(struct geometry_params){ .nodes = "X*", .unit_m = 1 }, why));
+    assert_false(geometry_cut(&(struct geometry){ 0 }, &l->model, &(struct geometry_params){ .nodes = "X*", .unit_m = 1 }, why));
     assert_non_null(strstr(why, "no node's name matches 'X*'"));
 }
 
@@ -337,39 +312,35 @@ CASE(units_and_axes_are_turned_to_metres_and_z_up)
 {
     good(l, HEAD "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"name\":\"p\",\"mesh\":0,\"translation\":[0,0,7000]}]," MESH(SQUARE) ACCESSORS
          "}");
-    struct geometry g = cut(l, &(struct geometry_params){ .unit_m = 0.001, .up = AXIS_Y });
-    assert_float_equal(g.origin_m[1], -7, 1e-9);     /* the model has y up, so its z axis becomes -y of the asset */
-    assert_float_equal(g.origin_m[2], 0.0005, 1e-9); /* and its y axis becomes z of the asset */
-    float n[3];
-    face_normal(&g, 0, n);
-    /* a face that pointed to +z in the model must point to -y in the asset */
-    assert_true(n[1] < 0 && fabsf(g.normals[0][1] + 1) < 1e-5f);
-    geometry_finish(&g);
+    const struct geometry *g = gltf_case_cut(l, NULL, 0.001, AXIS_Y);
+    assert_float_equal(g->origin_m[1], -7, 1e-9);     /* the model has y up, so its z axis becomes -y of the asset */
+    assert_float_equal(g->origin_m[2], 0.0005, 1e-9); /* and its y axis becomes z of the asset */
+    double n[3];
+    gltf_case_face_normal(g, 0, n);
+    assert_true(n[1] < 0 && fabsf(g->normals[0][1] + 1) < 1e-5f); /* a face that pointed to +z in the model must point to -y in the asset */
 }
 
 CASE(mirrored_nodes_keep_their_outside)
 {
     good(l, HEAD "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0,\"scale\":[-1,1,2]}]," MESH(
                 "{\"attributes\":{\"POSITION\":0,\"NORMAL\":8},\"indices\":1}") ACCESSORS "}");
-    struct geometry g = cut(l, &(struct geometry_params){ .unit_m = 1, .up = AXIS_Z });
+    const struct geometry *g = gltf_case_cut(l, NULL, 1, AXIS_Z);
     for (uint32_t t = 0; t < 2; t++) {
-        float n[3];
-        face_normal(&g, t, n);
+        double n[3];
+        gltf_case_face_normal(g, t, n);
         assert_true(n[2] > 0);
     }
-    for (uint32_t v = 0; v < g.vertex_count; v++)
-        assert_float_equal(g.normals[v][2], 1, 1e-6); /* normals are valid even where the model's own normal has length zero */
-    geometry_finish(&g);
+    for (uint32_t v = 0; v < g->vertex_count; v++)
+        assert_float_equal(g->normals[v][2], 1, 1e-6); /* normals are valid even where the model's own normal has length zero */
 }
 
 CASE(triangles_without_area_are_left_out)
 {
     good(l, HEAD "\"scenes\":[{\"nodes\":[0,1]}],\"nodes\":[{\"mesh\":0},{\"mesh\":0,\"scale\":[1,0,1]}]," MESH(SQUARE) ACCESSORS "}");
-    struct geometry g = cut(l, &(struct geometry_params){ .unit_m = 1, .up = AXIS_Z });
-    assert_int_equal(g.index_count, 6);
-    assert_int_equal(g.degenerate_triangles, 2);
-    assert_int_equal(g.vertex_count, 4);
-    geometry_finish(&g);
+    const struct geometry *g = gltf_case_cut(l, NULL, 1, AXIS_Z);
+    assert_int_equal(g->index_count, 6);
+    assert_int_equal(g->degenerate_triangles, 2);
+    assert_int_equal(g->vertex_count, 4);
 }
 
 CASE(a_nodes_place_is_the_middle_of_its_meshes)
@@ -414,10 +385,9 @@ CASE(a_name_that_is_there_several_times_is_refused)
     /* the pattern "south/" with an empty name matches the node without a name */
     assert_true(geometry_node_place(&l->model, &params, "south/", place, why));
     assert_float_equal(place[0], 30.5, 1e-9);
-    struct geometry g = cut(l, &(struct geometry_params){ .nodes = "north\n#5\n!#1", .unit_m = 1, .up = AXIS_Z });
-    assert_int_equal(g.primitive_count, 2);
-    assert_float_equal(g.origin_m[0], 20.5, 1e-9);
-    geometry_finish(&g);
+    const struct geometry *g = gltf_case_cut(l, "north\n#5\n!#1", 1, AXIS_Z);
+    assert_int_equal(g->primitive_count, 2);
+    assert_float_equal(g->origin_m[0], 20.5, 1e-9);
 }
 
 /* Valid model files from which no asset can be extracted. */
@@ -481,12 +451,12 @@ CASE(wrong_instances_and_sparse_elements_are_refused)
    normals at an edge may tilt to the other side a little. */
 static bool faces_outward(const struct geometry *g, uint32_t tri)
 {
-    float out[3];
-    face_normal(g, tri, out);
-    float length = sqrtf(out[0] * out[0] + out[1] * out[1] + out[2] * out[2]);
+    double out[3];
+    gltf_case_face_normal(g, tri, out);
+    double length = sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2]);
     for (int k = 0; k < 3; k++) {
         const float *n = g->normals[g->indices[3 * tri + (uint32_t)k]];
-        if (n[0] * out[0] + n[1] * out[1] + n[2] * out[2] < -0.6f * length)
+        if ((double)n[0] * out[0] + (double)n[1] * out[1] + (double)n[2] * out[2] < -0.6 * length)
             return false;
     }
     return true;
@@ -507,15 +477,14 @@ CASE(real_models_go_through)
         gltf_case_read(l, path);
         if (!l->good)
             fail_msg("%s: %s", path, l->why);
-        struct geometry g = cut(l, &(struct geometry_params){ .unit_m = 1, .up = AXIS_Y });
-        assert_true(g.index_count > 3000);
+        const struct geometry *g = gltf_case_cut(l, NULL, 1, AXIS_Y);
+        assert_true(g->index_count > 3000);
         assert_int_equal(l->model.scaled_rotations, 0);
-        for (uint32_t v = 0; v < g.vertex_count; v++) {
-            const float *n = g.normals[v];
+        for (uint32_t v = 0; v < g->vertex_count; v++) {
+            const float *n = g->normals[v];
             assert_float_equal(n[0] * n[0] + n[1] * n[1] + n[2] * n[2], 1, 1e-3);
         }
-        for (uint32_t t = 0; t < g.index_count / 3; t++)
-            assert_true(faces_outward(&g, t));
-        geometry_finish(&g);
+        for (uint32_t t = 0; t < g->index_count / 3; t++)
+            assert_true(faces_outward(g, t));
     }
 }

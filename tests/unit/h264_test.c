@@ -136,14 +136,13 @@ CASE(many_make_the_same_picture)
 
 CASE(colours_are_described)
 {
-    struct frame *frame = picture(320, 180, 0);
+    struct frame *frame = test_frame(picture(320, 180, 0));
     pass(f, frame, 92, true, NULL);
     assert_int_equal(f->picture->color_range, AVCOL_RANGE_JPEG);
     assert_int_equal(f->picture->colorspace, AVCOL_SPC_SMPTE170M);
     assert_int_equal(f->picture->color_primaries, AVCOL_PRI_BT709);
     assert_int_equal(f->picture->color_trc, AVCOL_TRC_IEC61966_2_1);
     assert_int_equal(f->decoder->has_b_frames, 0);
-    frame_unref(&frame);
 }
 
 CASE(key_frames_come_on_demand_only)
@@ -158,15 +157,13 @@ CASE(key_frames_come_on_demand_only)
 
 CASE(equal_pictures_are_not_sent_and_little_costs_little)
 {
-    struct frame *frame = picture(1280, 720, 0), *same = picture(1280, 720, 0), *near = picture(1280, 720, 0);
+    struct frame *frame = test_frame(picture(1280, 720, 0)), *same = test_frame(picture(1280, 720, 0)), *near = picture(1280, 720, 0);
     memset(near->bgrx + 300 * (size_t)near->stride_bytes, 250, 64 * 4);
     pass(f, frame, 92, true, NULL);
     size_t whole = f->bytes;
     assert_false(pass(f, same, 92, false, frame));
     assert_true(pass(f, near, 92, false, frame));
     assert_true(!f->key && f->bytes < 600 && f->bytes * 10 < whole);
-    frame_unref(&frame);
-    frame_unref(&same);
     frame_unref(&near);
 }
 

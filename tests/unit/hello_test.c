@@ -29,17 +29,16 @@ struct hello_fixture {
 
 static void write_tokens(struct hello_fixture *f, bool with_bob)
 {
-    struct text text = { 0 };
+    struct text *text = test_text();
     struct token_holder alice = { .role = ROLE_ENGINEER, .name = "alice", .until_utc_ns = INT64_MAX };
     struct token_holder bob = { .role = ROLE_VIEWER, .name = "bob", .until_utc_ns = INT64_MAX };
     tokens_hash("pc_alice", alice.hash);
     tokens_hash("pc_bob", bob.hash);
-    tokens_print_line(&text, &alice);
+    tokens_print_line(text, &alice);
     if (with_bob)
-        tokens_print_line(&text, &bob);
-    assert_int_equal(atomic_file_put(f->path, text.at, text.length), 0);
+        tokens_print_line(text, &bob);
+    assert_int_equal(atomic_file_put(f->path, text->at, text->length), 0);
     assert_int_equal(chmod(f->path, 0600), 0);
-    text_finish(&text);
 }
 
 static void begin(struct hello_fixture *f)
@@ -99,10 +98,9 @@ static void leave(struct hello_fixture *f, struct session **session)
 /* Asserts that the session has a text message to send now, and returns it parsed. */
 static json_t *hear(struct hello_fixture *f, struct session *session)
 {
-    struct text text = { 0 };
-    assert_true(session_next_text(session, f->now_ns, f->now_ns, &text));
-    json_t *message = test_json(json_loads(text.at, 0, NULL));
-    text_finish(&text);
+    struct text *text = test_text();
+    assert_true(session_next_text(session, f->now_ns, f->now_ns, text));
+    json_t *message = test_json(json_loads(text->at, 0, NULL));
     return message;
 }
 
@@ -204,9 +202,7 @@ CASE(a_login_that_is_held_up_keeps_no_holder)
 /* Returns to a session with its resume secret. extra: further members of the hello message, or "". */
 static void come_back(struct hello_fixture *f, enum role role, const char *secret, const char *extra, struct session **out)
 {
-    char text[400];
-    snprintf(text, sizeof(text), "{\"type\":\"hello\",\"resume\":\"%s\"%s}", secret, extra);
-    *out = open_session(f, role, text);
+    *out = open_session(f, role, test_printf("{\"type\":\"hello\",\"resume\":\"%s\"%s}", secret, extra));
 }
 
 static void expect_view_of_before(const struct session *session)

@@ -59,11 +59,8 @@ static void begin(struct historian_setup *s)
     s->plant = plant_by_hand_create(TAGS);
     s->plant->history = (struct plant_history){ .override_s = 600 };
     plant_by_hand_source(s->plant, "plc", 502);
-    for (int i = 0; i < TAGS; i++) {
-        char name[16];
-        snprintf(name, sizeof(name), "T-%02d", i);
-        plant_by_hand_tag(s->plant, name, TABLE_HOLDING, 2 * i, DATA_FLOAT32)->deadband = 0;
-    }
+    for (int i = 0; i < TAGS; i++)
+        plant_by_hand_tag(s->plant, test_printf("T-%02d", i), TABLE_HOLDING, 2 * i, DATA_FLOAT32)->deadband = 0;
     s->store = test_store(s->plant);
     s->tags = history_tags(s->plant);
 }
@@ -111,12 +108,11 @@ static int64_t write_all(struct historian_setup *s, double value)
 
 static double counted(struct historian_setup *s, const char *name)
 {
-    struct text text = { 0 };
-    counters_print(s->counters, &text);
+    struct text *text = test_text();
+    counters_print(s->counters, text);
     char *line = test_printf("\n%s ", name);
-    const char *found = strstr(text.at, line);
+    const char *found = strstr(text->at, line);
     double value = found ? strtod(found + strlen(line), NULL) : NAN;
-    text_finish(&text);
     return value;
 }
 
@@ -134,6 +130,7 @@ static size_t points_around(struct historian_setup *s, int tag, int64_t around_u
     struct history_reader *reader = history_reader_create(s->log, folder);
     int64_t from_us = around_us - 7200 * US_PER_S, to_us = around_us + 7200 * US_PER_S;
     assert_int_equal(history_series(reader, s->tags[tag].name, from_us, to_us, 1000000, series), 0);
+    test_series(series);
     history_reader_destroy(&reader);
     return series->points.count;
 }
@@ -146,7 +143,7 @@ static size_t points_of(struct historian_setup *s, int tag, struct history_serie
 /* Returns how many events of this kind are in the file of the month to which utc_ns belongs. */
 static int events_of(struct historian_setup *s, const char *kind, int64_t utc_ns)
 {
-    char name[MONTH_NAME_BYTES], *query = mem_printf("SELECT count(*) FROM event WHERE kind = '%s'", kind);
+    char name[MONTH_NAME_BYTES], *query = test_printf("SELECT count(*) FROM event WHERE kind = '%s'", kind);
     month_name(month_of(utc_ns / 1000), name);
     char *path = test_printf("%s/history/%s", s->folder, name);
     sqlite3 *db;
@@ -157,7 +154,6 @@ static int events_of(struct historian_setup *s, const char *kind, int64_t utc_ns
     int count = sqlite3_column_int(statement, 0);
     sqlite3_finalize(statement);
     sqlite3_close(db);
-    mem_free(query);
     return count;
 }
 
@@ -196,16 +192,15 @@ CASE(all_that_was_told_is_there)
 /* Passes samples from a leading core to the historian of its standby, in messages as between two cores. */
 static void pass_on(struct core_samples *link, struct historian *standby)
 {
-    struct text bytes = { 0 };
+    struct text *bytes = test_text();
     struct sample_event *samples;
     size_t count;
-    while (core_samples_write(link, &bytes) > 0) {
-        assert_null(core_samples_read(&samples, &count, TAGS, bytes.at, bytes.length, clock_mono_ns()));
+    while (core_samples_write(link, bytes) > 0) {
+        assert_null(core_samples_read(&samples, &count, TAGS, bytes->at, bytes->length, clock_mono_ns()));
         historian_mirror(standby, samples, count);
         mem_free(samples);
-        bytes.length = 0;
+        bytes->length = 0;
     }
-    text_finish(&bytes);
 }
 
 static void read_series(struct historian_setup *s, const char *name, int tag, struct history_series *series)
@@ -213,9 +208,9 @@ static void read_series(struct historian_setup *s, const char *name, int tag, st
     int64_t now_us = clock_utc_ns() / 1000;
     char *folder = temp_path(s->folder, name);
     struct history_reader *reader = history_reader_create(s->log, folder);
-    history_series_finish(series); /* frees the points that the previous call stored in *series */
     int error = history_series(reader, s->tags[tag].name, now_us - 7200 * US_PER_S, now_us + 7200 * US_PER_S, 10000, series);
     assert_int_equal(error, 0);
+    test_series(series);
     history_reader_destroy(&reader);
 }
 
@@ -231,7 +226,7 @@ static bool has_quality(const struct history_series *series, uint32_t quality)
    lost which never sent a sample, exactly as the leader's historian does. */
 CASE(a_standby_records_what_time_alone_changes)
 {
-    struct history_series here = { 0 }, there = { 0 };
+    struct history_series here, there;
     char *folder = temp_path(s->folder, "standby");
     for (int i = 0; i < TAGS; i++)
         s->plant->tags[i].validity.stale_s = i < TAGS / 2 ? 0.5 : 3600;
@@ -269,8 +264,6 @@ CASE(a_standby_records_what_time_alone_changes)
             assert_int_equal(here.points.at[k].quality, there.points.at[k].quality);
         }
     }
-    history_series_finish(&here);
-    history_series_finish(&there);
     core_samples_end(&link);
 }
 
@@ -408,7 +401,6 @@ static double kill_one(struct historian_setup *s, _Atomic int64_t *told, unsigne
     assert_true(count > 0);
     double lost_s = (double)(killed_ns / 1000 - series.points.at[count - 1].t_us) / 1e6;
     printf("# killed: %.3f s lost, %zu points\n", lost_s, count);
-    history_series_finish(&series);
     return lost_s;
 }
 
@@ -450,7 +442,6 @@ CASE(a_full_disk_loses_nothing)
     size_t count = points_of(s, 0, &series);
     printf("# %zu points\n", count);
     assert_true(count > 195);
-    history_series_finish(&series);
 }
 
 /* A file at the path of the history folder makes the folder unusable, like a read-only one. Once the file is removed, a
@@ -467,7 +458,6 @@ CASE(a_folder_that_comes_later_is_used)
     struct history_series series;
     assert_true(points_of(s, 0, &series) > 0);
     assert_true(series.points.at[0].value == 5);
-    history_series_finish(&series);
 }
 
 static bool has_point(const struct history_series *series, int64_t utc_ns, double value)
@@ -487,7 +477,6 @@ static void expect_spooled_run(struct historian_setup *s, int64_t first_ns, int6
     historian_stop(&s->historian);
     assert_true(points_of(s, 3, &series) >= 2);
     assert_true(has_point(&series, first_ns, 5 + 3) && has_point(&series, last_ns, 7 + 3));
-    history_series_finish(&series);
     struct snapshot *snapshot = test_snapshot(TAGS);
     look(s, last_ns, snapshot);
     assert_true(snapshot->readings[3].value == 10);
@@ -535,7 +524,6 @@ CASE(a_clock_set_forward_leaves_its_hour_empty)
     historian_stop(&s->historian);
     assert_true(points_of(s, 3, &series) >= 4);
     assert_true(has_point(&series, before_ns, 4) && has_point(&series, second_ns, 5) && has_point(&series, after_ns, 12));
-    history_series_finish(&series);
     look(s, second_ns, snapshot);
     assert_true(snapshot->readings[3].value == 5 && snapshot->readings[3].quality == QUALITY_GOOD);
     for (int minute = 1; minute < 60; minute += 7) {
@@ -565,7 +553,6 @@ CASE(a_clock_set_back_loses_nothing)
     points_of(s, 3, &series);
     for (int i = 0; i < 6; i++)
         assert_true(has_point(&series, times_ns[i], bent(i) + 3));
-    history_series_finish(&series);
     assert_int_equal(events_of(s, "clock", times_ns[5]), 1);
     assert_true(counted(s, "plantcast_history_lost_total") == 0);
 }
@@ -595,7 +582,6 @@ TEST_WITH(summer_time_comes_and_goes, set_up, tear_down)
         points_around(s, 3, changes_s[k] * US_PER_S, &series);
         for (int i = 0; i < 10; i++)
             assert_true(has_point(&series, times_ns[i], i * i + 3) && (i == 0 || times_ns[i] > times_ns[i - 1]));
-        history_series_finish(&series);
         assert_int_equal(events_of(s, "clock", change_ns), 0);
         assert_int_equal(events_of(s, "gap", change_ns), 0);
     }
@@ -668,7 +654,6 @@ CASE(a_full_disk_has_room_for_a_spool)
     points_of(s, 3, &series);
     for (int i = 0; i < 400; i++)
         assert_true(has_point(&series, times_ns[i], bent(i) + 3));
-    history_series_finish(&series);
     assert_true(counted(s, "plantcast_history_lost_total") == 0);
     assert_int_equal(umount2(folder, MNT_DETACH), 0);
 }
@@ -692,13 +677,11 @@ CASE(a_read_only_disk_loses_nothing)
     times_ns[2] = write_all(s, 7);
     points_of(s, 0, &series); /* recorded history stays readable */
     assert_true(has_point(&series, times_ns[0], 1));
-    history_series_finish(&series);
     assert_int_equal(mount(NULL, folder, NULL, MS_REMOUNT, NULL), 0);
     historian_stop(&s->historian);
     points_of(s, 0, &series);
     for (int i = 0; i < 3; i++)
         assert_true(has_point(&series, times_ns[i], i == 2 ? 7 : i + 1));
-    history_series_finish(&series);
     assert_true(counted(s, "plantcast_history_lost_total") == 0);
     assert_int_equal(umount2(folder, MNT_DETACH), 0);
 }
@@ -740,7 +723,6 @@ CASE(a_corrupt_month_is_set_aside_and_recording_goes_on)
     assert_true(counted(s, "plantcast_history_good") == 1 && counted(s, "plantcast_history_lost_total") == 0);
     points_of(s, 3, &series);
     assert_true(has_point(&series, first_ns, 4) && has_point(&series, second_ns, 5));
-    history_series_finish(&series);
 }
 
 /* Another process locks the database file for more than a second. Threads that write to the store, or that read from it, must
@@ -777,5 +759,4 @@ CASE(a_disk_that_hangs_holds_up_nobody)
     points_of(s, 3, &series);
     for (int i = 0; i < 50; i++)
         assert_true(has_point(&series, times_ns[i], bent(i) + 3));
-    history_series_finish(&series);
 }

@@ -172,7 +172,7 @@ static void record_much(struct history_queries_setup *s)
 CASE(long_answers_come_in_pieces)
 {
     struct history_query query = { .client = 7, .account = 1, .tags = { 0, 1 }, .tag_count = 2, .max_points = 20000 };
-    struct text all = { 0 };
+    struct text *all = test_text();
     int pieces = 0;
     record_much(s);
     query.from_us = NOW;
@@ -184,7 +184,7 @@ CASE(long_answers_come_in_pieces)
     assert_null(history_queries_collect(s->queries)); /* there must be no second part before the client asks for it */
     for (;;) {
         bool last = answer->last;
-        text_add_bytes(&all, answer->text, answer->length);
+        text_add_bytes(all, answer->text, answer->length);
         history_answer_free(&answer);
         if (last)
             break;
@@ -192,10 +192,9 @@ CASE(long_answers_come_in_pieces)
         answer = wait_for(s, ++pieces);
         assert_false(answer->first);
     }
-    json_t *root = test_json(json_loads(all.at, 0, NULL));
+    json_t *root = test_json(json_loads(all->at, 0, NULL));
     assert_int_equal(json_array_size(json_object_get(json_array_get(json_object_get(root, "series"), 1), "points")), 20000);
     assert_int_equal(pieces, 2);
-    text_finish(&all);
 }
 
 CASE(who_is_forgotten_leaves_room)

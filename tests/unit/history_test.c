@@ -373,7 +373,7 @@ static void set_zone(const char *zone)
 CASE(time_zones_do_not_touch_what_is_recorded)
 {
     const char *const zones[] = { "Pacific/Kiritimati", "Europe/Berlin", "America/Adak", "UTC" }, *before = getenv("TZ");
-    char *kept = before ? mem_strdup(before) : NULL;
+    char *kept = test_memory(before ? mem_strdup(before) : NULL);
     const int64_t autumn = NOVEMBER - (6 * 86400 + 82800) * S; /* 2026-10-25T01:00Z: in Berlin the clock is set back from 3:00 to 2:00 */
     const int64_t begins[] = { autumn - 1800 * S, NOVEMBER - 1800 * S };
     size_t count;
@@ -391,10 +391,9 @@ CASE(time_zones_do_not_touch_what_is_recorded)
             assert_int_equal(month_file_tidy(file), 0);
             month_file_close(&file);
         }
-    int *months = month_list(s->folder, &count);
+    int *months = test_memory(month_list(s->folder, &count));
     assert_int_equal(count, 2); /* months are counted in UTC, whatever the time zone */
     assert_int_equal(months[1], month_of(NOVEMBER));
-    mem_free(months);
     for (size_t zone = 0; zone < 4; zone++)
         for (size_t b = 0; b < 2; b++) {
             struct history_series series;
@@ -411,7 +410,6 @@ CASE(time_zones_do_not_touch_what_is_recorded)
             history_series_finish(&series);
         }
     set_zone(kept);
-    mem_free(kept);
 }
 
 /* --- compressed points ------------------------------------------------------------------------------------------------------- */
@@ -495,7 +493,7 @@ CASE(every_point_comes_back_bit_by_bit)
 CASE(an_import_is_rolled_up_again)
 {
     enum { COUNT = 20000 };
-    struct history_point *points = mem_array(COUNT, sizeof(*points));
+    struct history_point *points = test_memory(mem_array(COUNT, sizeof(*points)));
     struct history_series once, twice;
     for (int i = 0; i < COUNT; i++)
         points[i] = (struct history_point){ NOVEMBER + i * S, rand() % 1000, 0 };
@@ -514,7 +512,6 @@ CASE(an_import_is_rolled_up_again)
     }
     history_series_finish(&once);
     history_series_finish(&twice);
-    mem_free(points);
 }
 
 static sqlite3 *open_database(const char *path)
@@ -593,7 +590,7 @@ CASE(values_hold_until_a_point_at_the_border_of_a_bucket)
 CASE(a_span_between_sparse_points_begins_with_the_bucket_before)
 {
     enum { COUNT = 400, APART_S = 1000 };
-    struct history_point *points = mem_array(COUNT, sizeof(*points));
+    struct history_point *points = test_memory(mem_array(COUNT, sizeof(*points)));
     struct history_series series;
     for (int i = 0; i < COUNT; i++)
         points[i] = (struct history_point){ NOVEMBER + (i - COUNT / 2) * APART_S * S, i, 0 }; /* half of them in October */
@@ -609,7 +606,6 @@ CASE(a_span_between_sparse_points_begins_with_the_bucket_before)
         assert_true(series.buckets.at[1].t_us + series.bucket_us > from_us);
         history_series_finish(&series);
     }
-    mem_free(points);
 }
 
 /* Adds the line from point a to point b, as far as it lies between begin_us and end_us, to the rollup *out. b NULL: a is the
@@ -739,7 +735,7 @@ CASE(intervals_are_those_of_the_line)
 {
     enum { MOST = 3000 };
     srand((unsigned)sweep_seed());
-    struct history_point *points = mem_array(MOST, sizeof(*points));
+    struct history_point *points = test_memory(mem_array(MOST, sizeof(*points)));
     for (int tag = 0; tag < TAGS; tag++) {
         bool step = s->tags[tag].step;
         int count = make_points(points, MOST, step);
@@ -759,7 +755,6 @@ CASE(intervals_are_those_of_the_line)
             history_series_finish(&series);
         }
     }
-    mem_free(points);
 }
 
 /* A query of any length returns points if they are few enough, otherwise intervals. */
@@ -767,7 +762,7 @@ CASE(few_points_of_a_long_time_come_as_points)
 {
     enum { MOST = 3000, DAY = 86400 };
     srand((unsigned)sweep_seed());
-    struct history_point *points = mem_array(MOST, sizeof(*points));
+    struct history_point *points = test_memory(mem_array(MOST, sizeof(*points)));
     int count = make_points(points, MOST, false);
     write_points(s, 0, points, count);
     for (int round = 0; round < 300; round++) {
@@ -786,7 +781,6 @@ CASE(few_points_of_a_long_time_come_as_points)
             assert_int_equal(series.points.at[i].t_us, points[first + (int)i].t_us);
         history_series_finish(&series);
     }
-    mem_free(points);
 }
 
 /* After a restart, no line connects the last point of the run before with the first point of the new one. */
@@ -925,16 +919,15 @@ static const char version_1[] =
 /* Runs an SQL query and asserts that its rows, joined into one text, equal `wanted`. */
 static void assert_rows(sqlite3 *db, const char *query, const char *wanted)
 {
-    struct text found = { 0 };
+    struct text *found = test_text();
     sqlite3_stmt *s;
     assert_int_equal(sqlite3_prepare_v2(db, query, -1, &s, NULL), SQLITE_OK);
-    text_add(&found, "%s", "");
+    text_add(found, "%s", "");
     while (sqlite3_step(s) == SQLITE_ROW)
         for (int i = 0, n = sqlite3_column_count(s); i < n; i++)
-            text_add(&found, "%s%s", sqlite3_column_text(s, i) ? (const char *)sqlite3_column_text(s, i) : "-", i + 1 < n ? " " : "; ");
+            text_add(found, "%s%s", sqlite3_column_text(s, i) ? (const char *)sqlite3_column_text(s, i) : "-", i + 1 < n ? " " : "; ");
     sqlite3_finalize(s);
-    assert_string_equal(found.at, wanted);
-    text_finish(&found);
+    assert_string_equal(found->at, wanted);
 }
 
 static void check_contents(sqlite3 *db)
@@ -1006,9 +999,8 @@ CASE(what_cannot_be_brought_up_stays_as_it_was)
 
 static void make_month(const struct history_setup *s, const char *name, size_t bytes)
 {
-    char *content = mem_array(bytes, 1);
+    char *content = test_memory(mem_array(bytes, 1));
     temp_write(s->folder, name, content, bytes);
-    mem_free(content);
 }
 
 CASE(old_and_large_months_go)
@@ -1192,8 +1184,7 @@ CASE(months_wait_for_what_is_to_be_sent)
     retention_apply(s->log, s->folder, &limits, march_us, &unsent);
     assert_int_equal(unsent, 0);
     mem_free(month_list(s->folder, &count));
-    /* two of the three month files are left: the one whose points had all been sent was deleted for its age */
-    assert_int_equal(count, 2);
+    assert_int_equal(count, 2); /* two of the three month files are left: the one whose points had all been sent was deleted for its age */
     /* a month file above the size limit loses its oldest points; `unsent` counts those that had not been sent to the database
        */
     int64_t waiting = waiting_in(s, november + 1), lost = 0;
@@ -1286,8 +1277,7 @@ static void write_in_unit(struct history_setup *s, const char *unit, int64_t t_u
     month_file_close(&file);
 }
 
-/* Reads TT-1's series while the plant says that TT-1 has this unit. Returns the lines logged meanwhile; free with mem_free().
-   */
+/* Reads TT-1 like a plant in which TT-1 has this unit. Returns the lines of the log. */
 static char *read_in_unit(struct history_setup *s, const char *unit, int64_t to_us, int max_points, struct history_series *series)
 {
     mem_free(s->plant->tags[0].unit);
@@ -1308,7 +1298,8 @@ static char *read_in_unit(struct history_setup *s, const char *unit, int64_t to_
     close(kept);
     close(to);
     assert_int_equal(error, 0);
-    char *text = text_read_file(said, 1 << 20, &bytes);
+    test_series(series);
+    char *text = test_memory(text_read_file(said, 1 << 20, &bytes));
     assert_non_null(text);
     return text;
 }
@@ -1327,16 +1318,12 @@ CASE(points_of_another_quantity_are_left_out)
         char *first = strstr(said, line);
         assert_non_null(first);
         assert_null(strstr(first + 1, line)); /* the second query says nothing */
-        mem_free(said);
-        history_series_finish(&series);
         /* writes a point in the new unit: the file now has points in both */
         write_in_unit(s, after, NOVEMBER + 10 * S, 20, 1, true);
         said = read_in_unit(s, after, NOVEMBER + 100 * S, 1000, &series);
         assert_non_null(strstr(said, line));
-        mem_free(said);
         assert_int_equal(series.points.count, 1);
         assert_float_equal(series.points.at[0].value, 20, 0);
-        history_series_finish(&series);
         assert_int_equal(history_intervals(s->reader, "TT-1", NOVEMBER, NOVEMBER + 3600 * S, 2, &series), 0);
         assert_int_equal(series.buckets.count, 1);
         assert_float_equal(series.buckets.at[0].high, 20, 0);
@@ -1362,10 +1349,9 @@ CASE(points_of_another_quantity_are_left_out)
         /* The plant has the old unit again: its points are returned, and a point without a value separates those before the
            change from the new one. */
         write_in_unit(s, before, NOVEMBER + 20 * S, 110, 1, false);
-        mem_free(read_in_unit(s, before, NOVEMBER + 100 * S, 1000, &series));
+        read_in_unit(s, before, NOVEMBER + 100 * S, 1000, &series);
         assert_int_equal(series.points.count, 5);
         assert_true(series.points.at[2].value == 102 && isnan(series.points.at[3].value) && series.points.at[4].value == 110);
-        history_series_finish(&series);
         char name[MONTH_NAME_BYTES];
         month_name(month_of(NOVEMBER), name);
         assert_int_equal(unlink(temp_path(s->folder, name)), 0);
@@ -1380,8 +1366,6 @@ CASE(a_unit_stated_later_keeps_the_points)
     char *said = read_in_unit(s, "°C", NOVEMBER + 100 * S, 1000, &series);
     assert_string_equal(said, "");
     assert_int_equal(series.points.count, 4);
-    mem_free(said);
-    history_series_finish(&series);
 }
 
 CASE(a_spool_is_read_in_the_present_units)

@@ -61,6 +61,7 @@ static struct history_series read_series(struct import_setup *s, const char *fol
     struct history_series series;
     assert_int_equal(history_series(reader, tag, OCTOBER_25 - 3600 * US_PER_S, OCTOBER_25 + 86400 * US_PER_S, 100000, &series), 0);
     history_reader_destroy(&reader);
+    test_series(&series);
     return series;
 }
 
@@ -111,7 +112,6 @@ CASE(long_rows_are_taken)
     assert_true(series.points.at[1].t_us - series.points.at[0].t_us == 3600 * US_PER_S);
     assert_true(series.points.at[1].value == 2.5);
     assert_true(isnan(series.points.at[2].value) && series.points.at[2].quality == QUALITY_BAD_COMMUNICATION_ERROR);
-    history_series_finish(&series);
 }
 
 CASE(wide_rows_count_from_a_start)
@@ -122,7 +122,6 @@ CASE(wide_rows_count_from_a_start)
     assert_int_equal(s->counts.bad, 1);
     struct history_series series = read_series(s, "h", "FT-1");
     assert_points(&series.points, (const struct wanted_point[]){ { 0, 2 }, { 1, NAN }, { 60 * US_PER_S, NAN }, { 120 * US_PER_S, 8 } }, 4);
-    history_series_finish(&series);
 }
 
 CASE(everything_wrong_is_said_and_nothing_is_taken)
@@ -172,8 +171,6 @@ CASE(times_without_a_zone_are_the_plant_s)
     for (int i = 0; i < 5; i++)
         assert_true(wide.points.at[i].t_us == OCTOBER_25 + minutes[i] * 60 * US_PER_S);
     assert_true(fresh.points.at[0].t_us == OCTOBER_25 + 30 * 60 * US_PER_S + US_PER_S / 2);
-    history_series_finish(&wide);
-    history_series_finish(&fresh);
     assert_false(import(s, "gap", "Time,FT-1\n2026-03-29 02:30,1\n", INT64_MIN, 0));
     timestamp_use_zone("UTC");
 }
@@ -189,26 +186,22 @@ CASE(files_that_are_no_series_are_refused)
 /* An export contains the imported points, and importing that export gives the same points. */
 CASE(out_and_in_again_is_the_same)
 {
-    struct text csv = { 0 }, out = { 0 };
-    text_add(&csv, "Time,TT-1\n");
+    struct text *csv = test_text(), *out = test_text();
+    text_add(csv, "Time,TT-1\n");
     for (int i = 0; i < 5000; i++)
-        text_add(&csv, "%d,%.4f\n", i, 20 + 5 * sin(i / 50.0) + (i % 977 == 0 ? 30 : 0));
-    assert_true(import(s, "one", csv.at, OCTOBER_25, US_PER_S));
+        text_add(csv, "%d,%.4f\n", i, 20 + 5 * sin(i / 50.0) + (i % 977 == 0 ? 30 : 0));
+    assert_true(import(s, "one", csv->at, OCTOBER_25, US_PER_S));
     assert_true(s->counts.points < s->counts.samples / 3);
     struct history_series one = read_series(s, "one", "TT-1");
-    series_text_csv_head(&out, false);
-    series_text_csv(&out, "TT-1", "", &one);
+    series_text_csv_head(out, false);
+    series_text_csv(out, "TT-1", "", &one);
     s->plant->tags[1].deadband = 0;
-    assert_true(import(s, "two", out.at, INT64_MIN, 0));
+    assert_true(import(s, "two", out->at, INT64_MIN, 0));
     struct history_series two = read_series(s, "two", "TT-1");
     assert_int_equal(one.points.count, two.points.count);
     for (size_t i = 0; i < one.points.count; i++)
         assert_true(one.points.at[i].t_us == two.points.at[i].t_us && one.points.at[i].quality == two.points.at[i].quality &&
                     (isnan(one.points.at[i].value) || fabs(one.points.at[i].value - two.points.at[i].value) < 1e-8));
-    history_series_finish(&one);
-    history_series_finish(&two);
-    text_finish(&csv);
-    text_finish(&out);
 }
 
 /* --- times without data --------------------------------------------------------------------------------------------------------- */
@@ -317,18 +310,17 @@ CASE(words_and_blanks_are_bad_samples)
         { "Intf Shut", QUALITY_BAD_OUT_OF_SERVICE }, { "Out of Serv", QUALITY_BAD_OUT_OF_SERVICE },
     };
     enum { CELLS = sizeof(cells) / sizeof(cells[0]) };
-    struct text csv = { 0 };
-    text_add(&csv, "Time,FT-1,TT-1\n");
+    struct text *csv = test_text();
+    text_add(csv, "Time,FT-1,TT-1\n");
     for (int i = 0; i < CELLS; i++)
-        text_add(&csv, "%d,5,5\n%d,%s,6\n", 20 * i, 20 * i + 10, cells[i].cell);
-    assert_true(import(s, "h", csv.at, OCTOBER_25, US_PER_S));
+        text_add(csv, "%d,5,5\n%d,%s,6\n", 20 * i, 20 * i + 10, cells[i].cell);
+    assert_true(import(s, "h", csv->at, OCTOBER_25, US_PER_S));
     assert_int_equal(s->counts.bad, CELLS);
     for (int i = 0; i < CELLS; i++) {
         uint32_t quality = read_at(s, "h", 0, (20 * i + 15) * US_PER_S).quality;
         if (quality != cells[i].quality)
             fail_msg("'%s' became 0x%08X", cells[i].cell, quality);
     }
-    text_finish(&csv);
     static const char *const garbage[] = { "12,5", "1.2.3", "hot", "badge", "0x10", "12 °C", "5%", "1e" };
     for (size_t i = 0; i < sizeof(garbage) / sizeof(garbage[0]); i++) {
         char *rows = test_printf("Time;FT-1\n0;1\n10;%s\n", garbage[i]);
@@ -348,7 +340,6 @@ CASE(the_last_of_equal_times_counts)
     assert_int_equal(s->counts.bad, 0);
     struct history_series series = read_series(s, "h", "FT-1");
     assert_points(&series.points, (const struct wanted_point[]){ { 0, 1 }, { 10 * US_PER_S, 4 }, { 20 * US_PER_S, 6 } }, 3);
-    history_series_finish(&series);
 }
 
 /* A series in several files may be imported in any order: gaps remain only where data is missing. Importing again with a larger

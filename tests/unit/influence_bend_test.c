@@ -72,23 +72,21 @@ static void make_sphere(struct cad *shape)
 /* Makes a sphere and a box that intersects its wall, so that a part of each lies inside the other. */
 static void make_crossing(struct cad *shape)
 {
-    struct cad box = { 0 };
+    struct cad *box = test_cad();
     const double move_m[3] = { 0.5 + 0.2 * cad_random(&chance), -0.3, -0.35 };
     cad_sphere(shape, &chance, 7);
-    cad_box(&box, &chance, 4, 3, 3, 0.2);
-    join(shape, &box, move_m);
-    cad_finish(&box);
+    cad_box(box, &chance, 4, 3, 3, 0.2);
+    join(shape, box, move_m);
 }
 
 /* Makes the sphere and the box with gaps in their meshes, which the surface's repair bridges. */
 static void make_gaps(struct cad *shape)
 {
-    struct cad clean = { 0 };
-    make_crossing(&clean);
-    uint32_t *vertex_of = mem_array(clean.vertex_count, sizeof(*vertex_of));
-    cad_break(shape, &clean, CAD_GAPS, &chance, vertex_of);
+    struct cad *clean = test_cad();
+    make_crossing(clean);
+    uint32_t *vertex_of = mem_array(clean->vertex_count, sizeof(*vertex_of));
+    cad_break(shape, clean, CAD_GAPS, &chance, vertex_of);
     mem_free(vertex_of);
-    cad_finish(&clean);
 }
 
 /* Returns the largest error at a point that any readings between MIN and MAX can cause, as a share of MAX - MIN. The error is
@@ -237,7 +235,6 @@ static void holds(const struct case_of *of)
     vertex_embedding_destroy(&embedding);
     influence_bend_finish(&bend);
     influence_mesh_finish(&mesh);
-    surface_destroy(&surface);
     mem_free(drawn.positions);
     mem_free(drawn.facing);
     cad_finish(&drawn.shape);
@@ -275,35 +272,32 @@ TEST(test_bridged_cracks)
 TEST(test_what_is_not_on_the_surface_is_unknown)
 {
     const double places_m[1][3] = { { 1, 0, 0 } };
-    struct cad shape = { 0 };
+    struct cad *shape = test_cad();
     struct influence_mesh mesh;
     struct influence_bend bend;
-    cad_sphere(&shape, &chance, 5);
-    struct surface *surface = surface_of(&shape);
+    cad_sphere(shape, &chance, 5);
+    struct surface *surface = surface_of(shape);
     assert_true(surface && influence_mesh_init(&mesh, surface, places_m, 1, DISC_M, (double)INFINITY));
     for (int axis = 0; axis < 3; axis++)
-        shape.positions[shape.triangles[0]][axis] *= 1.2f;
-    struct influence_anchor *anchors = mem_array(shape.vertex_count, sizeof(*anchors));
+        shape->positions[shape->triangles[0]][axis] *= 1.2f;
+    struct influence_anchor *anchors = test_memory(mem_array(shape->vertex_count, sizeof(*anchors)));
     const struct bend_drawn on = {
-        (const float(*)[3])shape.positions, shape.triangles, shape.vertex_count, shape.triangle_count, anchors, NULL, 0
+        (const float(*)[3])shape->positions, shape->triangles, shape->vertex_count, shape->triangle_count, anchors, NULL, 0
     };
     assert_true(influence_bend_init(&bend, &mesh, surface, &on, MOST));
     size_t unknown = 0;
-    for (size_t t = 0; t < shape.triangle_count; t++) {
+    for (size_t t = 0; t < shape->triangle_count; t++) {
         bool moved = false;
         for (int k = 0; k < 3; k++)
-            moved |= shape.triangles[3 * t + k] == shape.triangles[0];
+            moved |= shape->triangles[3 * t + k] == shape->triangles[0];
         unknown += bend.unknown_m2[t] > 0;
         assert_true(moved ? bend.unknown_m2[t] > 0.5 * bend.area_m2[t] : bend.unknown_m2[t] == 0);
     }
-    assert_true(unknown > 0 && unknown < shape.triangle_count / 4);
+    assert_true(unknown > 0 && unknown < shape->triangle_count / 4);
     influence_bend_finish(&bend);
     assert_false(influence_bend_init(&bend, &mesh, surface, &on, 10));
     influence_bend_finish(&bend);
-    mem_free(anchors);
     influence_mesh_finish(&mesh);
-    surface_destroy(&surface);
-    cad_finish(&shape);
 }
 
 TEST_GROUP(surface_case_set_up, surface_case_tear_down)

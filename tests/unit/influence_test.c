@@ -46,7 +46,6 @@ static void finish(struct influence_case *s)
 {
     influence_finish(&s->influence);
     mem_free(s->errors);
-    surface_destroy(&s->surface);
     cad_finish(&s->shape);
 }
 
@@ -352,7 +351,7 @@ TEST(test_many_sensors_are_solved_in_blocks)
     cad_sphere(&s.shape, &chance, 16);
     solve(&s, (const double(*)[3])places, MANY, 0.05, 0.5);
     const size_t shares = MANY * s.shape.vertex_count;
-    float *threads = mem_array(shares, sizeof(*threads));
+    float *threads = test_memory(mem_array(shares, sizeof(*threads)));
     memcpy(threads, s.influence.shares, shares * sizeof(*threads));
     struct workers *own = workers;
     workers = NULL;
@@ -360,7 +359,6 @@ TEST(test_many_sensors_are_solved_in_blocks)
     workers = own;
     for (size_t i = 0; i < shares; i++)
         assert_true(fabs((double)(s.influence.shares[i] - threads[i])) < 1e-6);
-    mem_free(threads);
     solve(&s, (const double(*)[3])places, MANY, 0.05, (double)INFINITY);
     for (size_t v = 0; v < s.shape.vertex_count; v++)
         assert_true(fabs(influence_value(&s.influence, ones, v) - 1) < 1e-4);

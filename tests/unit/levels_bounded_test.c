@@ -3,7 +3,6 @@
    borders and seams stay in place. */
 #include "tests/support/test.h"
 
-#include "base/math/vec.h"
 #include "preprocess/levels/levels_bounded.h"
 #include "tests/support/geometry_case.h"
 
@@ -246,7 +245,7 @@ TEST(seams_stay)
     shape_end(&s);
     bounded_simplify(s.bounded, error_m);
     size_t count = bounded_count(s.bounded);
-    uint32_t *left = mem_array(3 * count, sizeof(*left));
+    uint32_t *left = test_memory(mem_array(3 * count, sizeof(*left)));
     bounded_read(s.bounded, left);
     print_message("# %zu of %u triangles\n", count, s.g.index_count / 3);
     assert_true(count * 10 < s.g.index_count / 3);
@@ -266,6 +265,5 @@ TEST(seams_stay)
             }
         }
     }
-    mem_free(left);
     shape_finish(&s);
 }

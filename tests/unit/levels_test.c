@@ -111,7 +111,7 @@ TEST_WITH(levels_lie_close, set_up, tear_down)
 TEST_WITH(levels_are_nested, set_up, tear_down)
 {
     const struct set_of *s = *state;
-    char *used = mem_array(s->g.vertex_count, 1);
+    char *used = test_memory(mem_array(s->g.vertex_count, 1));
     for (size_t l = 0; l + 1 < s->levels.count; l++) {
         memset(used, 0, s->g.vertex_count);
         for (uint32_t i = 0; i < s->levels.at[l].index_count; i++)
@@ -119,7 +119,6 @@ TEST_WITH(levels_are_nested, set_up, tear_down)
         for (uint32_t i = 0; i < s->levels.at[l + 1].index_count; i++)
             assert_true(used[s->levels.at[l + 1].indices[i]]);
     }
-    mem_free(used);
 }
 
 /* In each level every edge belongs to two triangles, which traverse it in opposite directions: the torus is still closed. */

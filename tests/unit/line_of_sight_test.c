@@ -40,12 +40,11 @@ static void make_pair(struct sheet_and_rod *pair, double thick, double rod, cons
     cad_box(&pair->cad, &chance, ACROSS, UP, 1, CELL);
     stretch(&pair->cad, 0, 1, 1, thick / CELL, (const double[3]){ 0, 0, 0 });
     pair->sheet_count = pair->cad.vertex_count;
-    struct cad bar = { 0 };
-    cad_box(&bar, &chance, ALONG, 1, 1, CELL);
-    stretch(&bar, 0, 1, rod / CELL, rod / CELL, low);
-    cad_append(&pair->cad, &bar, (double[3]){ 0 });
+    struct cad *bar = test_cad();
+    cad_box(bar, &chance, ALONG, 1, 1, CELL);
+    stretch(bar, 0, 1, rod / CELL, rod / CELL, low);
+    cad_append(&pair->cad, bar, (double[3]){ 0 });
     memcpy(pair->source, source, sizeof(pair->source));
-    cad_finish(&bar);
 }
 
 /* Returns the distance from p on one side of the sheet to q on the other side, on the shortest way around a rim. */
@@ -94,7 +93,6 @@ static void test_pair(const char *name, const struct sheet_and_rod *pair, bool b
                       surface_report(surface)->components_after, worst[0], worst[1]);
         assert_int_equal(surface_report(surface)->components_after, pieces);
         assert_true(worst[0] < 2 * pair->rod + OFF && worst[1] < 2 * pair->rod + OFF);
-        surface_destroy(&surface);
         cad_finish(&broken);
         mem_free(found);
         mem_free(vertex_of);

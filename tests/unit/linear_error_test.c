@@ -85,7 +85,6 @@ static void check_shape(const char *name, struct cad *clean, int faults)
         char *what = test_printf("%s, %s", name, cad_fault_names[fault]);
         check_sources(what, surface, (const float(*)[3])broken.positions, broken.vertex_count, (const double(*)[3])sources_m, SOURCES);
         check_edges(what, surface);
-        surface_destroy(&surface);
         cad_finish(&broken);
     }
     mem_free(vertex_of);

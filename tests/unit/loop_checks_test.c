@@ -130,10 +130,10 @@ TEST_WITH(test_a_line_that_was_cut_off_spoils_no_other, set_up, tear_down)
 {
     struct loop_checks_fixture *f = *state;
     assert_int_equal(loop_checks_add(f->loop_checks, 0, &passed), REFUSAL_NONE);
-    char *path = temp_path(f->folder, LOOP_CHECKS_FILE), *whole = read_file(f);
+    char *path = temp_path(f->folder, LOOP_CHECKS_FILE), *whole = test_memory(read_file(f));
     size_t length = strlen(whole);
     assert_int_equal(loop_checks_add(f->loop_checks, 1, &passed), REFUSAL_NONE);
-    char *both = read_file(f);
+    char *both = test_memory(read_file(f));
     size_t end = strlen(both);
     /* truncates the file within its second line, at every byte: the check of the first line must stay valid, and a new one can
        be added */
@@ -147,8 +147,6 @@ TEST_WITH(test_a_line_that_was_cut_off_spoils_no_other, set_up, tear_down)
         assert_int_equal(loop_checks_of(f->loop_checks, 0)->state, LOOP_CHECK_PASSED);
         assert_int_equal(loop_checks_of(f->loop_checks, 1)->state, LOOP_CHECK_PASSED);
     }
-    mem_free(both);
-    mem_free(whole);
 }
 
 TEST_WITH(test_what_cannot_be_kept_is_refused_and_counts_for_nothing, set_up, tear_down)
@@ -179,13 +177,12 @@ TEST_WITH(test_the_folder_is_made_where_nobody_has_yet, set_up, tear_down)
 TEST_WITH(test_all_tags_with_a_source_are_told, set_up, tear_down)
 {
     struct loop_checks_fixture *f = *state;
-    struct text text = { 0 };
+    struct text *text = test_text();
     assert_int_equal(loop_checks_add(f->loop_checks, 0, &passed), REFUSAL_NONE);
-    loop_checks_print(f->loop_checks, &text);
-    assert_int_equal(strncmp(text.at, "Time,Tag Name,Result,", 21), 0);
-    assert_non_null(strstr(text.at, "\n2023-11-14T22:13:20Z,\"TI-1\",pass,42,\"\",42.3,0.5,"
-                                    "\"Kim, \"\"field\"\"\",\"calibrator 7 line 2\","));
-    assert_non_null(strstr(text.at, "\n,\"TI-2\",none,,\"\",,,\"\",\"\","));
-    assert_null(strstr(text.at, "SUM"));
-    text_finish(&text);
+    loop_checks_print(f->loop_checks, text);
+    assert_int_equal(strncmp(text->at, "Time,Tag Name,Result,", 21), 0);
+    assert_non_null(strstr(text->at, "\n2023-11-14T22:13:20Z,\"TI-1\",pass,42,\"\",42.3,0.5,"
+                                     "\"Kim, \"\"field\"\"\",\"calibrator 7 line 2\","));
+    assert_non_null(strstr(text->at, "\n,\"TI-2\",none,,\"\",,,\"\",\"\","));
+    assert_null(strstr(text->at, "SUM"));
 }

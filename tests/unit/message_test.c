@@ -58,7 +58,7 @@ static void check_vector(const char *file, int *accepted, int *refused)
 {
     size_t count, n = strcspn(file, "-");
     struct message_error error = { 0 };
-    char *path = test_printf("%s/%s", FOLDER, file), *text = text_read_file(path, 1 << 20, &count);
+    char *path = test_printf("%s/%s", FOLDER, file), *text = test_memory(text_read_file(path, 1 << 20, &count));
     assert_non_null(text);
     bool good = take(text, count, &error);
     if (!strncmp(file, "accepted--", 10)) {
@@ -73,7 +73,6 @@ static void check_vector(const char *file, int *accepted, int *refused)
         assert_true(error.text[0] != 0);
         ++*refused;
     }
-    mem_free(text);
 }
 
 TEST(vectors_are_taken_or_refused)
@@ -289,11 +288,8 @@ TEST(baselines_are_set_shown_and_forgotten)
     assert_int_equal(baselines_find(context.baselines, "other"), 0);
     changed(view, "{\"type\":\"params\",\"seq\":4,\"baseline\":{\"remove\":\"calm\"}}");
     assert_int_equal(baselines_find(context.baselines, "calm"), 0);
-    for (int i = (int)baselines_list(context.baselines, list); i < BASELINES_NAMED; i++) {
-        char text[100];
-        snprintf(text, sizeof(text), "{\"type\":\"params\",\"seq\":5,\"baseline\":{\"set\":\"b%d\"}}", i);
-        changed(view, text);
-    }
+    for (int i = (int)baselines_list(context.baselines, list); i < BASELINES_NAMED; i++)
+        changed(view, test_printf("{\"type\":\"params\",\"seq\":5,\"baseline\":{\"set\":\"b%d\"}}", i));
     refuse(&view, "{\"type\":\"params\",\"seq\":6,\"baseline\":{\"set\":\"one too many\"}}", "baseline");
     changed(view, "{\"type\":\"params\",\"seq\":7,\"baseline\":{\"set\":\"b31\"}}");
     assert_int_equal(baselines_list(context.baselines, list), BASELINES_NAMED);
@@ -619,11 +615,10 @@ TEST(no_number_is_minus_nought)
 {
     struct pick_answer answer = { .pick = { .sensor = -1, .state = PICK_BETWEEN, .value = -0.0, .position_m = { -0.0, 2, -0.0 } } };
     view_default(small_scene(), 640, 360, &answer.query.view);
-    char *text = reply_picked_text(plant(), &answer);
+    char *text = test_memory(reply_picked_text(plant(), &answer));
     assert_non_null(strstr(text, "\"position\":[0.0,2.0,0.0]"));
     assert_non_null(strstr(text, "\"value\":0.0"));
     assert_null(strstr(text, "-0.0"));
-    mem_free(text);
 }
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -637,16 +632,15 @@ enum { MANY_ASSETS = ASSET_SET_MAX };
 
 static struct plant *load_many(void)
 {
-    struct text yaml = { 0 };
+    struct text *yaml = test_text();
     char *folder = temp_folder(), *model = realpath("tests/fuzz/gltf/data_uri.gltf", NULL);
     assert_non_null(model);
-    text_add(&yaml, "plant: { name: Many }\ngroups:\n  - { id: t, unit: K, min: 0, max: 1 }\ntags: tags.csv\nassets:\n");
+    text_add(yaml, "plant: { name: Many }\ngroups:\n  - { id: t, unit: K, min: 0, max: 1 }\ntags: tags.csv\nassets:\n");
     for (int i = MANY_ASSETS - 1; i >= 0; i--)
-        text_add(&yaml, "  - { id: EQUIP-%06d, model: %s }\n", i, model);
+        text_add(yaml, "  - { id: EQUIP-%06d, model: %s }\n", i, model);
     temp_write_text(folder, "tags.csv", "Tag Name,Address,Data Type\n");
-    struct plant *many = plant_load_or_print(temp_write_text(folder, "plant.yaml", yaml.at));
+    struct plant *many = plant_load_or_print(temp_write_text(folder, "plant.yaml", yaml->at));
     assert_non_null(many);
-    text_finish(&yaml);
     free(model);
     return many;
 }

@@ -66,9 +66,7 @@ static void await_line(const char *words, double timeout_s)
 static void add_blocks(struct modbus_case *s)
 {
     for (int i = 0; i < BLOCKS; i++) {
-        char name[20];
-        snprintf(name, sizeof(name), "B%d", i);
-        plant_by_hand_tag(s->plant, name, TABLE_HOLDING, 500 * i, DATA_INT16);
+        plant_by_hand_tag(s->plant, test_printf("B%d", i), TABLE_HOLDING, 500 * i, DATA_INT16);
         s->plant->tags[i].validity.stale_s = 30;
     }
     s->plant->sources[0].poll_ms = POLL_MS;
@@ -369,9 +367,7 @@ enum { UNITS = 12 };
 static void start_gateway(struct modbus_case *s)
 {
     for (int i = 0; i < UNITS; i++) {
-        char name[20];
-        snprintf(name, sizeof(name), "U%d", i);
-        plant_by_hand_tag(s->plant, name, TABLE_HOLDING, i, DATA_INT16)->signal.modbus_unit = i + 1;
+        plant_by_hand_tag(s->plant, test_printf("U%d", i), TABLE_HOLDING, i, DATA_INT16)->signal.modbus_unit = i + 1;
         s->plant->tags[i].validity.stale_s = 300;
     }
     s->plant->sources[0].poll_ms = POLL_MS;

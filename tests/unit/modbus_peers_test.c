@@ -17,11 +17,10 @@
 static char *program(const char *name)
 {
     const char *folder = getenv("PLANTCAST_BIN");
-    char *path = mem_printf("%s/%s", folder ? folder : "build", name);
+    char *path = test_printf("%s/%s", folder ? folder : "build", name);
     if (access(path, X_OK) == 0)
         return path;
     print_message("# %s is not there\n", path);
-    mem_free(path);
     skip();
     return NULL;
 }
@@ -122,7 +121,6 @@ static pid_t simulate(const char *folder, int port)
     char *path = program("plantcast-sim");
     snprintf(number, sizeof(number), "%d", port);
     pid_t pid = spawn(path, (char *[]){ path, paths[4], "--port", number, NULL });
-    mem_free(path);
     return pid;
 }
 
@@ -143,11 +141,10 @@ static char *ask_until_answered(const char *command)
 
 static void assert_prints(const char *words, const char *fmt, int port)
 {
-    char *command = test_printf(fmt, port), *out = ask_until_answered(command);
+    char *command = test_printf(fmt, port), *out = test_memory(ask_until_answered(command));
     if (!strstr(out, words))
         print_message("# %s\n%s\n", command, out);
     assert_non_null(strstr(out, words));
-    mem_free(out);
 }
 
 TEST(mbpoll_reads_the_simulator)
@@ -171,12 +168,11 @@ TEST(a_probe_shows_every_type_and_order)
     int port = free_port();
     char *folder = temp_folder(), *path = program("plantcast");
     pid_t pid = simulate(folder, port);
-    char *command = test_printf("%s tags --probe 127.0.0.1:%d hr:2 2>&1", path, port), *out = ask_until_answered(command);
+    char *command = test_printf("%s tags --probe 127.0.0.1:%d hr:2 2>&1", path, port), *out = test_memory(ask_until_answered(command));
     /* two registers are left from this address to the device's last one: the command shows both, but no 64-bit value */
     assert_non_null(strstr(out, "registers 4000 C2ED\nbits 15-0 0100 0000 0000 0000"));
     assert_non_null(strstr(out, "               -118.625 "));
     assert_null(strstr(out, "float64"));
-    mem_free(out);
     const char *const wrong[] = { "400001", "hr:9999", "pr:1", "--address-base 2 400001", "hr:0 hr:1" };
     const int statuses[] = { 2, 1, 2, 2, 2 };
     for (int i = 0; i < 5; i++) {
@@ -186,7 +182,6 @@ TEST(a_probe_shows_every_type_and_order)
         assert_int_equal(WEXITSTATUS(status), statuses[i]);
     }
     end(pid);
-    mem_free(path);
 }
 
 /* All functions of libmodbus that write or that send raw data. A program that does not import them cannot call them. */
@@ -201,7 +196,6 @@ TEST(programs_import_nothing_that_writes)
         assert_true(i == 2 || strstr(out, "modbus_read_registers"));
         for (size_t k = 0; k < sizeof(writers) / sizeof(*writers); k++)
             assert_null(strstr(out, writers[k]));
-        mem_free(path);
         mem_free(out);
     }
 }

@@ -18,13 +18,12 @@
 
 static int64_t count_of(struct modbus_case *s, const char *line_start)
 {
-    struct text text = { 0 };
+    struct text *text = test_text();
     long long count = -1;
-    counters_print(s->counters, &text);
-    const char *at = strstr(text.at, line_start);
+    counters_print(s->counters, text);
+    const char *at = strstr(text->at, line_start);
     if (at)
         sscanf(at + strlen(line_start), "%lld", &count);
-    text_finish(&text);
     return count;
 }
 

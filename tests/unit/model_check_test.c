@@ -76,7 +76,7 @@ CASE(what_is_no_model_is_said_so)
 TEST_WITH(what_no_memory_holds_is_refused, plant_case_set_up, plant_case_tear_down)
 {
     struct plant_case *c = *state;
-    char *more = mem_strdup(model), *count = strstr(more, "\"count\":3,");
+    char *more = test_memory(mem_strdup(model)), *count = strstr(more, "\"count\":3,");
     memcpy(count, "\"count\":9", 9);
     char *huge = test_printf("%.*s000000000000000%s", (int)(count + 9 - more), more, count + 9);
     temp_write_text(c->folder, "h.gltf", huge);
@@ -100,7 +100,6 @@ TEST_WITH(what_no_memory_holds_is_refused, plant_case_set_up, plant_case_tear_do
             FOUND(c, { "plant.yaml", 0, 0, "4.67 million triangles are too many: 1.00 GB of memory hold at most 4.22 million. Leave" });
     }
     memory_bytes = 0;
-    mem_free(more);
 }
 
 CASE(nodes_are_looked_up)
@@ -209,7 +208,7 @@ CASE(broken_models_are_refused)
 {
     unsigned seed = 7;
     int read = 0;
-    char *path = temp_path(c->folder, "m.gltf"), *text = mem_strdup(model);
+    char *path = temp_path(c->folder, "m.gltf"), *text = test_memory(mem_strdup(model));
     size_t length = strlen(text);
     for (int round = 0; round < 2000; round++) {
         static const char signs[] = "0123456789-[]{},:\"eE.x";
@@ -227,5 +226,4 @@ CASE(broken_models_are_refused)
         }
     }
     assert_true(read > 100 && read < 1900);
-    mem_free(text);
 }

@@ -2,7 +2,6 @@
 /* The seat of a core: a unique id stored in its folder. It must survive restarts, must never be used by two cores at once, and
    must not be used by a copy of the folder. */
 #include "tests/support/test.h"
-#include <unistd.h>
 
 #include "corelink/node_id.h"
 
@@ -19,11 +18,10 @@ TEST(it_is_kept_and_never_shared)
     struct node_id node = { 0 }, other = { 0 };
     char first[9], again[9], *folder = temp_folder();
     take(&node, folder, first);
-    char *why = node_id_take(&other, folder);
+    char *why = test_memory(node_id_take(&other, folder));
     assert_non_null(why);
     assert_non_null(strstr(why, folder));
     assert_non_null(strstr(why, "another core"));
-    mem_free(why);
     node_id_release(&node);
     take(&node, folder, again);
     assert_string_equal(again, first);
@@ -59,8 +57,7 @@ TEST(what_it_cannot_read_is_made_anew_and_no_folder_is_said)
     temp_write_text(folder, "node", "no seat at all, and much longer than what stands here is ever going to be, by a good deal");
     take(&node, folder, id);
     node_id_release(&node);
-    char *why = node_id_take(&node, "/dev/null/none");
+    char *why = test_memory(node_id_take(&node, "/dev/null/none"));
     assert_non_null(why);
     assert_non_null(strstr(why, "/dev/null/none/node"));
-    mem_free(why);
 }

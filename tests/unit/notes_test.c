@@ -92,9 +92,8 @@ CASE(another_user_ends_a_note_only_with_the_right_to)
     assert_int_equal(notes_end(f->notes, f->id, "lee", true, NOON + 3 * S), REFUSAL_NONE);
     assert_string_equal(notes_author(f->notes, f->id), "kim"); /* the author of an ended note is still known */
     assert_notes(notes_text(f->notes, NOON + 4 * S), "");
-    char *text = notes_text_between(f->notes, NOON, NOON + S);
+    char *text = test_memory(notes_text_between(f->notes, NOON, NOON + S));
     assert_non_null(strstr(text, "\"ended_by\":\"lee\""));
-    mem_free(text);
 }
 
 CASE(there_is_a_limit)
@@ -107,10 +106,9 @@ CASE(there_is_a_limit)
             assert_int_equal(add(f, "n", NOON + round * 100 * S, NOON + (round * 100 + 60) * S), REFUSAL_NONE);
     assert_int_equal(add(f, "last", NOON + 1000 * S, 0), REFUSAL_NONE);
     open_again(f); /* reopening must accept a file with the maximum number of notes */
-    char *text = notes_text_between(f->notes, 0, INT64_MAX);
+    char *text = test_memory(notes_text_between(f->notes, 0, INT64_MAX));
     json_t *message = test_json(json_loads(text, 0, NULL));
     assert_int_equal(json_array_size(json_object_get(message, "list")), NOTES_ENDED + 1);
-    mem_free(text);
 }
 
 CASE(they_are_at_what_they_say)
@@ -119,20 +117,18 @@ CASE(they_are_at_what_they_say)
     assert_int_equal(notes_add(f->notes, &(struct note){ .text = "p", .position_m = place }, "kim", NOON, f->id), REFUSAL_NONE);
     assert_int_equal(notes_add(f->notes, &(struct note){ .text = "a", .asset = "E-1" }, "kim", NOON, f->id), REFUSAL_NONE);
     open_again(f);
-    char *text = notes_text(f->notes, NOON);
+    char *text = test_memory(notes_text(f->notes, NOON));
     assert_non_null(strstr(text, "\"position\":[1.0,2.5,-3.0]"));
     assert_non_null(strstr(text, "\"asset\":\"E-1\""));
-    mem_free(text);
 }
 
 CASE(a_note_of_the_whole_plant_has_no_place)
 {
     assert_int_equal(notes_add(f->notes, &(struct note){ .text = "shift" }, "kim", NOON, f->id), REFUSAL_NONE);
     open_again(f);
-    char *text = notes_text(f->notes, NOON);
+    char *text = test_memory(notes_text(f->notes, NOON));
     assert_non_null(strstr(text, "shift"));
     assert_null(strstr(text, "position"));
-    mem_free(text);
 }
 
 CASE(an_author_replaces_a_note_and_the_past_keeps_the_old_one)
@@ -147,9 +143,8 @@ CASE(an_author_replaces_a_note_and_the_past_keeps_the_old_one)
     open_again(f);
     assert_notes(notes_text_between(f->notes, NOON + 5 * S, NOON + 5 * S), "drips");
     assert_notes(notes_text(f->notes, NOON + 20 * S), "drips-a-lot");
-    char *text = notes_text(f->notes, NOON + 20 * S);
+    char *text = test_memory(notes_text(f->notes, NOON + 20 * S));
     assert_non_null(strstr(text, "\"asset\":\"E-1\""));
-    mem_free(text);
 }
 
 CASE(what_cannot_be_read_is_not_written_over)
@@ -205,8 +200,7 @@ CASE(a_note_is_shown_once_it_is_on_disk)
     assert_int_equal(system(mended), 0);
     assert_int_equal(notes_end(notes, f->id, "kim", false, NOON + S), REFUSAL_NONE);
     assert_int_equal(notes_add(notes, &three, "kim", NOON + S, f->id), REFUSAL_NONE);
-    /* closes the notes before the change is written, as a reload of the plant does: the writer must still write it */
-    notes_close(&notes);
+    notes_close(&notes); /* closes the notes before the change is written, as a reload of the plant does: the writer must still write it */
     file_writer_stop(writer);
     open_again(f);
     assert_notes(notes_text(f->notes, NOON + 2 * S), "one three");

@@ -43,9 +43,7 @@ static void add_stray(struct model_maker *maker, enum expected_stray stray, cons
         memset(places, 0, sizeof(places));
     for (int i = 0; stray == STRAY_NEEDLE && i < 3; i++)
         places[2][i] = (float)-at_m[i];
-    int positions = maker_numbers(maker, places, sizeof(places), FLOAT, 3, "VEC3");
-    int indices = maker_numbers(maker, corners, sizeof(corners), UINT, 3, "SCALAR");
-    int mesh = maker_mesh(maker, json_pack("{s:{s:i},s:i}", "attributes", "POSITION", positions, "indices", indices));
+    int mesh = maker_triangles(maker, (const float(*)[3])places, 3, corners, 3);
     maker_node(maker, "stray", mesh, json_pack("{s:[f,f,f]}", "translation", from_m[0], from_m[1], from_m[2]));
 }
 
@@ -54,33 +52,26 @@ static void write_plates_and(struct prep_case *c, uint32_t across, uint32_t up, 
                              const double at_m[3], enum expected_stray stray)
 {
     struct model_maker maker;
-    struct text places = { 0 }, corners = { 0 };
+    struct text *places = test_text(), *corners = test_text();
     for (uint32_t y = 0; y <= up; y++)
         for (uint32_t x = 0; x <= across; x++) {
             const float p[3] = { (float)(size_m[0] * x / across), (float)(size_m[1] * y / up), 0 };
-            text_add_bytes(&places, p, sizeof(p));
+            text_add_bytes(places, p, sizeof(p));
         }
     for (uint32_t y = 0; y < up; y++)
         for (uint32_t x = 0; x < across; x++) {
             uint32_t a = y * (across + 1) + x, b = a + across + 1;
             const uint32_t six[6] = { a, a + 1, b, b, a + 1, b + 1 };
-            text_add_bytes(&corners, six, sizeof(six));
+            text_add_bytes(corners, six, sizeof(six));
         }
     maker_init(&maker);
-    int positions = maker_numbers(&maker, places.at, places.length, FLOAT, (size_t)(across + 1) * (up + 1), "VEC3");
-    int indices = maker_numbers(&maker, corners.at, corners.length, UINT, (size_t)across * up * 6, "SCALAR");
-    int mesh = maker_mesh(&maker, json_pack("{s:{s:i},s:i}", "attributes", "POSITION", positions, "indices", indices));
+    int mesh = maker_triangles(&maker, (const float(*)[3])(void *)places->at, (size_t)(across + 1) * (up + 1),
+                               (const uint32_t *)(void *)corners->at, (size_t)across * up * 6);
     for (uint32_t i = 0; i < copies; i++)
         maker_node(&maker, "plate", mesh, json_pack("{s:[f,f,f]}", "translation", at_m[0], at_m[1], at_m[2]));
     if (stray != STRAY_NONE)
         add_stray(&maker, stray, at_m);
-    size_t size;
-    char *glb = maker_glb(&maker, &size);
-    temp_write(c->folder, "model.glb", glb, size);
-    mem_free(glb);
-    maker_finish(&maker);
-    text_finish(&places);
-    text_finish(&corners);
+    maker_write(&maker, c->folder, "model.glb");
 }
 
 static void write_plates(struct prep_case *c, uint32_t across, uint32_t up, const double size_m[2], uint32_t copies, const double at_m[3])

@@ -133,13 +133,12 @@ CASE(test_signatures)
     /* two keys that must not be used for the signature: one with an elliptic curve, one that is meant for encryption */
     cjose_jwk_t *curve = cjose_jwk_create_EC_random(CJOSE_JWK_EC_P_256, NULL);
     cjose_jwk_set_kid(curve, "e1", 2, NULL);
-    json_t *jwk = public_part(curve);
+    json_t *jwk = test_json(public_part(curve));
     json_object_set_new(jwk, "use", json_string("enc"));
     json_array_append(json_object_get(f->jwks, "keys"), jwk);
     expect(f, sign(curve, "ES256", "e1", CLAIMS), "n1", NULL, "does not publish");
     json_object_set_new(jwk, "use", json_string("sig"));
     expect(f, sign(curve, "ES256", "e1", CLAIMS), "n1", NULL, NULL);
-    json_decref(jwk);
     cjose_jwk_release(curve);
 }
 
@@ -148,10 +147,9 @@ CASE(test_signatures)
 CASE(test_algorithms)
 {
     static const char none[] = "eyJhbGciOiJub25lIn0.";
-    char *good = sign(f->key, "RS256", "k1", CLAIMS), *claims = strchr(good, '.') + 1;
+    char *good = test_memory(sign(f->key, "RS256", "k1", CLAIMS)), *claims = strchr(good, '.') + 1;
     expect(f, mem_printf("%s%.*s.", none, (int)strcspn(claims, "."), claims), "n1", NULL, "not signed");
     expect(f, mem_printf("%s%s", none, claims), "n1", NULL, "not signed");
-    mem_free(good);
     char *text = cjose_jwk_to_json(f->key, false, NULL);
     cjose_jwk_t *secret = cjose_jwk_create_oct_spec((const uint8_t *)text, strlen(text), NULL);
     expect(f, sign(secret, "HS256", "k1", CLAIMS), "n1", NULL, "not signed with a public-key algorithm");
@@ -205,7 +203,7 @@ CASE(test_claims)
 CASE(test_older_tokens)
 {
     struct id_token_expected expected = { .config = &f->config, .jwks = f->jwks, .sub = "s1", .now_s = NOW_S + 2 * 24 * 3600 };
-    char *token = sign(f->key, "RS256", "k1", CLAIMS);
+    char *token = test_memory(sign(f->key, "RS256", "k1", CLAIMS));
     for (int hours = 40; hours <= 72; hours += 32) {
         const char *why = NULL;
         json_t *claims;
@@ -214,13 +212,12 @@ CASE(test_older_tokens)
         assert_int_equal(fault, hours == 72 ? ID_TOKEN_GOOD : ID_TOKEN_BAD);
         json_decref(claims);
     }
-    mem_free(token);
 }
 
 CASE(test_roles_and_names)
 {
     char name[TOKEN_NAME_BYTES];
-    json_t *claims = json_loads(CLAIMS, 0, NULL);
+    json_t *claims = test_json(json_loads(CLAIMS, 0, NULL));
     assert_int_equal(id_token_role(&f->config, claims), ROLE_OPERATOR);
     json_object_set_new(claims, "groups", json_pack("[s,s,i]", "look", "OPS", 3));
     assert_int_equal(id_token_role(&f->config, claims), ROLE_VIEWER);
@@ -240,7 +237,6 @@ CASE(test_roles_and_names)
     json_object_set_new(claims, "preferred_username", json_string("a\nlogin from"));
     assert_true(id_token_name(&f->config, claims, name, sizeof(name)));
     assert_string_equal(name, "s1");
-    json_decref(claims);
 }
 
 TEST(test_log_ins)

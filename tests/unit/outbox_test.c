@@ -22,8 +22,8 @@ struct outbox_fixture {
 
 static void load(struct outbox_fixture *f, const char *rules)
 {
-    struct text yaml = { 0 }, csv = { 0 };
-    text_add(&yaml, "plant: { name: \"Werk Süd\", time_zone: Europe/Berlin }\n"
+    struct text *yaml = test_text(), *csv = test_text();
+    text_add(yaml, "plant: { name: \"Werk Süd\", time_zone: Europe/Berlin }\n"
                     "assets: [{ id: E-1, model: m.glb, area: Tank farm }, { id: E-2, model: m.glb }]\n"
                     "groups: [{ id: t, unit: degC, min: 0, max: 1 }]\nsources: [{ id: a, type: modbus, host: h }]\ntags: tags.csv\n"
                     "notify:\n  gather_s: 3\n  pause_s: 60\n  link: https://p.example/\n"
@@ -31,17 +31,15 @@ static void load(struct outbox_fixture *f, const char *rules)
                     "  - { id: ops, email: [ops@p.example, b@p.example] }\n  - { id: boss, webhook: \"https://h.example/\" }\n"
                     "  - { id: am, alertmanager: \"http://127.0.0.1:9093\" }\n  rules:\n%s",
              rules);
-    text_add(&csv, "Tag Name,Address,Source,Group,Asset,X,Y,Z,Description\n");
+    text_add(csv, "Tag Name,Address,Source,Group,Asset,X,Y,Z,Description\n");
     for (int i = 0; i < TAGS; i++)
-        text_add(&csv, "T%04d,%d,a,t,E-%d,0,0,0,%s\n", i, 40001 + i, 1 + i % 2, i == 0 ? "\"Kessel 1, heiß\"" : "");
+        text_add(csv, "T%04d,%d,a,t,E-%d,0,0,0,%s\n", i, 40001 + i, 1 + i % 2, i == 0 ? "\"Kessel 1, heiß\"" : "");
     outbox_destroy(&f->outbox);
-    plant_case_load(f->c, yaml.at, csv.at);
+    plant_case_load(f->c, yaml->at, csv->at);
     if (!f->c->plant)
         diag_print(&f->c->diag, stderr);
     assert_non_null(f->c->plant);
     f->outbox = outbox_create(f->c->plant);
-    text_finish(&yaml);
-    text_finish(&csv);
 }
 
 static int set_up(void **state)
@@ -321,7 +319,7 @@ CASE(alertmanager_hears_what_stands_and_what_has_ended)
     assert_int_equal(deliver(f, AM, T0 + 13 * S), 2);
     put(f, 1, LOCAL, false, false, T0, T0 + 20 * S);
     assert_true(outbox_next(f->outbox, AM, T0 + 23 * S, &message));
-    char *text = notify_alerts_text(f->c->plant, &message, T0 + 23 * S);
+    char *text = test_memory(notify_alerts_text(f->c->plant, &message, T0 + 23 * S));
     json_t *alerts = test_json(json_loads(text, 0, NULL));
     assert_int_equal(json_array_size(alerts), 2);
     const json_t *one = json_array_get(alerts, 0), *two = json_array_get(alerts, 1);
@@ -331,7 +329,6 @@ CASE(alertmanager_hears_what_stands_and_what_has_ended)
     /* time at which Alertmanager ends the alert unless it gets an update */
     assert_string_equal(json_string_value(json_object_get(one, "endsAt")), "2026-11-18T11:12:03.000Z");
     assert_string_equal(json_string_value(json_object_get(two, "endsAt")), "2026-11-18T11:07:00.000Z");
-    mem_free(text);
     outbox_sent(f->outbox, AM, T0 + 23 * S);
     assert_int_equal(deliver(f, AM, T0 + 60 * S), 0);
     assert_int_equal(deliver(f, AM, T0 + 83 * S), 1);
@@ -404,26 +401,22 @@ CASE(a_mail_says_what_and_since_when)
 {
     load(f, "  - { id: all, to: [ops, boss] }\n");
     struct outbox_message message;
-    struct text mail = { 0 };
+    struct text *mail = test_text();
     put(f, 0, LOCAL, true, true, T0, T0);
     assert_true(outbox_next(f->outbox, OPS, T0 + 3 * S, &message));
-    notify_mail_text(&mail, f->c->plant, &f->c->plant->notify->recipients[OPS], &message, T0 + 3 * S);
-    assert_non_null(strstr(mail.at, "From: plant@p.example\r\nTo: ops@p.example,\r\n b@p.example\r\nSubject: =?UTF-8?B?"));
-    assert_non_null(strstr(mail.at, "\r\nDate: Wed, 18 Nov 2026 11:06:43 +0000\r\nMessage-ID: <"));
-    for (const char *line = mail.at, *end; (end = strstr(line, "\r\n")); line = end + 2)
+    notify_mail_text(mail, f->c->plant, &f->c->plant->notify->recipients[OPS], &message, T0 + 3 * S);
+    assert_non_null(strstr(mail->at, "From: plant@p.example\r\nTo: ops@p.example,\r\n b@p.example\r\nSubject: =?UTF-8?B?"));
+    assert_non_null(strstr(mail->at, "\r\nDate: Wed, 18 Nov 2026 11:06:43 +0000\r\nMessage-ID: <"));
+    for (const char *line = mail->at, *end; (end = strstr(line, "\r\n")); line = end + 2)
         assert_true(end - line <= 78);
-    char *subject = decoded(strstr(mail.at, "?B?") + 3), *body = decoded(strstr(mail.at, "\r\n\r\n"));
+    char *subject = test_memory(decoded(strstr(mail->at, "?B?") + 3)), *body = test_memory(decoded(strstr(mail->at, "\r\n\r\n")));
     assert_int_equal(strncmp(subject, "[Werk Süd] P1 T0000 high high", strlen("[Werk Süd] P1 T0000 high high")), 0);
     assert_non_null(strstr(body, "P1  2026-11-18 12:06:40  T0000 high high, Kessel 1, heiß: raised at 95.5 degC (limit 90 degC); E-1, "
                                  "Tank farm\r\n"));
     assert_non_null(strstr(body, "Time zone of all times: Europe/Berlin. https://p.example/\r\n"));
-    char *json = notify_webhook_text(f->c->plant, &f->c->plant->notify->recipients[BOSS], &message);
+    char *json = test_memory(notify_webhook_text(f->c->plant, &f->c->plant->notify->recipients[BOSS], &message));
     assert_non_null(strstr(json, "\"plant\":\"Werk Süd\""));
     assert_non_null(strstr(json, "\"raised\":\"2026-11-18T11:06:40.000Z\",\"value\":95.5,\"limit\":90.0,\"unit\":\"degC\""));
-    mem_free(json);
-    mem_free(subject);
-    mem_free(body);
-    text_finish(&mail);
 }
 
 /* The text of an escalation. If alarms are acknowledged in the control system instead of in Plantcast, Plantcast does not know
@@ -440,14 +433,12 @@ CASE(an_escalated_mail_says_only_what_is_known)
         outbox_tick(f->outbox, raised_us + 10 * MIN);
         assert_true(outbox_next(f->outbox, OPS, raised_us + 10 * MIN + 3 * S, &message));
         notify_mail_text(&mail, f->c->plant, &f->c->plant->notify->recipients[OPS], &message, raised_us + 11 * MIN);
-        char *subject = decoded(strstr(mail.at, "?B?") + 3), *body = decoded(strstr(mail.at, "\r\n\r\n"));
+        char *subject = test_memory(decoded(strstr(mail.at, "?B?") + 3)), *body = test_memory(decoded(strstr(mail.at, "\r\n\r\n")));
         assert_non_null(strstr(subject, said[mode]));
         assert_non_null(strstr(body, said[mode]));
         assert_null(strstr(body, said[1 - mode]));
         outbox_sent(f->outbox, OPS, raised_us + 11 * MIN);
         put(f, mode, mode, false, false, raised_us, raised_us + 12 * MIN);
-        mem_free(subject);
-        mem_free(body);
         text_finish(&mail);
     }
 }

@@ -87,14 +87,13 @@ TEST(any_number_of_alarms_fits)
 {
     for (size_t i = 0; i < stand.snapshot->count; i++)
         stand.snapshot->readings[i].alarm = ALARM_BAD;
-    struct frame *frame = draw(0, true, false), *small = frame_create(NULL, 16, 16);
+    struct frame *frame = test_frame(draw(0, true, false)), *small = frame_create(NULL, 16, 16);
     assert_true(has_list(frame));
     /* the list must not extend into the upper half of the frame; the clock occupies the first 80 rows */
     for (int y = 0; y < HEIGHT / 2; y++)
         assert_true(y < 80 || frame->bgrx[y * frame->stride_bytes + 40] == 255);
     view_default(&stand.toy->scene, 16, 16, &small->view);
     overlay_draw(small, &stand.toy->scene, stand.snapshot, NULL);
-    frame_unref(&frame);
     frame_unref(&small);
     for (size_t i = 0; i < stand.snapshot->count; i++)
         stand.snapshot->readings[i].alarm = ALARM_NONE;
@@ -144,14 +143,12 @@ static struct frame *draw_bare(double value, enum alarm_kind alarm)
 
 TEST(a_bare_one_tells_of_no_sensor)
 {
-    struct frame *one = draw_bare(1, ALARM_NONE), *other = draw_bare(77, ALARM_HH), *full = draw(2, false, false);
+    struct frame *one = test_frame(draw_bare(1, ALARM_NONE)), *other = test_frame(draw_bare(77, ALARM_HH)), *full = draw(2, false, false);
     size_t bytes = (size_t)one->stride_bytes * HEIGHT;
     assert_memory_equal(one->bgrx, other->bgrx, bytes);
     assert_int_not_equal(memcmp(one->bgrx, full->bgrx, bytes), 0);
     assert_false(has_list(other));
     assert_int_equal(one->bgrx[200 * one->stride_bytes + 4 * 300], 255);
-    frame_unref(&one);
-    frame_unref(&other);
     frame_unref(&full);
 }
 
@@ -162,12 +159,12 @@ TEST(the_window_is_what_is_left_free)
     view_default(&stand.toy->scene, WIDTH, HEIGHT, &view);
     overlay_window(&stand.toy->scene, &view, &whole);
     assert_true(whole.left == -1 && whole.bottom == -1 && whole.right > 0.6 && whole.right < 0.85 && whole.top > 0.8 && whole.top < 0.9);
-    struct frame *frame = draw(0, false, false);
-    /* from x = 600 on, the window for the plant must be white: the overlay draws only the marker and its label, farther left */
+    struct frame *frame = test_frame(draw(0, false, false));
+    /* from x = 600 on, the window for the plant must be white: the overlay draws only the marker and its label, farther left
+       */
     for (int y = (int)((1 - whole.top) / 2 * HEIGHT) + 1; y < HEIGHT; y++)
         for (int x = 600; x < (int)((1 + whole.right) / 2 * WIDTH); x++)
             assert_int_equal(frame->bgrx[y * frame->stride_bytes + 4 * x], 255);
-    frame_unref(&frame);
     view_split(&view, &(struct view){ .field = view.field, .range_min = view.range_min, .range_max = view.range_max });
     overlay_window(&stand.toy->scene, &view, &half);
     assert_true(half.right < 2 * whole.right - 0.9);
@@ -310,7 +307,7 @@ static void differ(struct view *right, int way)
 /* If the halves of a split view are computed differently, each must have a caption that says how, because legends do not. */
 TEST(halves_say_what_they_differ_in)
 {
-    struct frame *plain = draw(0, false, true);
+    struct frame *plain = test_frame(draw(0, false, true));
     for (int x = 0; x < 240; x++) /* no caption: both halves of this frame are computed alike */
         assert_int_equal(plain->bgrx[20 * plain->stride_bytes + 4 * (WIDTH / 2 + 4 + x)], 255);
     for (int way = 0; way < 9; way++) {
@@ -323,7 +320,6 @@ TEST(halves_say_what_they_differ_in)
                 fail_msg("way %d, half %d: %d pixels of a caption", way, half, caption_px(frame, plain, half));
         frame_unref(&frame);
     }
-    frame_unref(&plain);
 }
 
 /* Returns a checksum of the pixels within a rectangle of a frame. */

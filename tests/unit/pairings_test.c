@@ -101,10 +101,9 @@ CASE(a_device_is_bound_kept_and_revoked)
     assert_int_equal(holder.display, 2);
     assert_true(holder.unattended);
     assert_int_equal(tokens_role(tokens, &holder, 0), ROLE_VIEWER);
-    char *text = pairings_text(f->pairings);
+    char *text = test_memory(pairings_text(f->pairings));
     assert_non_null(strstr(text, "\"from\":\"10.0.0.5\""));
     assert_null(strstr(text, "hash"));
-    mem_free(text);
     assert_int_not_equal(pairings_revoke(f->pairings, "nobody"), REFUSAL_NONE);
     assert_int_equal(pairings_revoke(f->pairings, holder.name), REFUSAL_NONE);
     assert_int_equal(tokens_role(tokens, &holder, 0), ROLE_NOBODY);
@@ -184,7 +183,7 @@ CASE(a_renderer_asks_its_core)
     print_secret(3, secret);
     assert_int_equal(look(renderer, 3, 0, there), PAIRING_WAITS);
     assert_string_equal(there, "");
-    char *text = pairings_request_text(&(struct pairing_request){ secret, ROOM, (const uint8_t[16]){ 7 }, "10.0.0.5" });
+    char *text = test_memory(pairings_request_text(&(struct pairing_request){ secret, ROOM, (const uint8_t[16]){ 7 }, "10.0.0.5" }));
     assert_null(strstr(text, secret));
     json_t *request = test_json(json_loads(text, 0, NULL));
     uint64_t before = pairings_number(f->pairings);
@@ -210,7 +209,6 @@ CASE(a_renderer_asks_its_core)
     assert_int_equal(pairings_number(f->pairings), before);
     json_t *wrong = test_json(json_pack("{s:[],s:[{s:s}]}", "devices", "waiting", "digits", "123456"));
     assert_false(pairings_mirror(renderer, wrong, 0) || pairings_mirror(renderer, request, 0));
-    mem_free(text);
     pairings_close(&renderer);
 }
 

@@ -135,7 +135,7 @@ TEST(cuts_make_no_difference)
 TEST(gentle_colours_are_left_alone)
 {
     struct frame_bytes picture;
-    uint8_t *mean = mem_array(320 * 100 * 3 / 2, 1);
+    uint8_t *mean = test_memory(mem_array(320 * 100 * 3 / 2, 1));
     picture_init(&picture, 320, 100);
     for (int y = 0; y < 100; y++)
         for (int x = 0; x < 320; x++)
@@ -144,5 +144,4 @@ TEST(gentle_colours_are_left_alone)
     plain(&picture, mean);
     assert_memory_equal(picture.bytes, mean, 320 * 100 * 3 / 2);
     picture_finish(&picture);
-    mem_free(mean);
 }

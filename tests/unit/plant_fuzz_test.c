@@ -39,7 +39,7 @@ static void replay(const char *path, unsigned seed)
 {
     static uint8_t bytes[MAX_BYTES];
     size_t count;
-    char *text = text_read_file(path, MAX_BYTES / 2, &count);
+    char *text = test_memory(text_read_file(path, MAX_BYTES / 2, &count));
     assert_non_null(text);
     LLVMFuzzerTestOneInput((const uint8_t *)text, count);
     for (int round = 0; round < CHANGED; round++) {
@@ -50,7 +50,6 @@ static void replay(const char *path, unsigned seed)
             length = change(bytes, length, MAX_BYTES);
         LLVMFuzzerTestOneInput(bytes, length);
     }
-    mem_free(text);
 }
 
 TEST(seeds_and_their_changes_keep_the_promises)

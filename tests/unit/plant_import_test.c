@@ -108,9 +108,8 @@ TEST_WITH(test_uploads, set_up, tear_down)
 
 static json_t *told(const struct plant_import_fixture *f)
 {
-    char *text = plant_import_text(f->import, &(struct import_source){ .host = "" });
+    char *text = test_memory(plant_import_text(f->import, &(struct import_source){ .host = "" }));
     json_t *object = test_json(json_loads(text, 0, NULL));
-    mem_free(text);
     assert_non_null(object);
     return object;
 }

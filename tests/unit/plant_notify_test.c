@@ -2,7 +2,6 @@
 /* The plant file's `notify` section: parsing, and errors reported with their position. */
 #include "tests/support/test.h"
 
-#include "base/text/text.h"
 #include "plant/sections/notification.h"
 #include "tests/support/plant_case.h"
 
@@ -10,12 +9,10 @@
 
 static void load(struct plant_case *c, const char *notify)
 {
-    struct text yaml = { 0 };
-    text_add(&yaml, "plant: { name: P }\nassets: [{ id: E-1, model: m.glb }]\n"
-                    "groups: [{ id: t, unit: degC, min: 0, max: 1 }]\ntags: tags.csv\n%s\n",
-             notify);
-    plant_case_load(c, yaml.at, "Tag Name,Address\nT1,40001\n");
-    text_finish(&yaml);
+    char *yaml = test_printf("plant: { name: P }\nassets: [{ id: E-1, model: m.glb }]\n"
+                             "groups: [{ id: t, unit: degC, min: 0, max: 1 }]\ntags: tags.csv\n%s\n",
+                             notify);
+    plant_case_load(c, yaml, "Tag Name,Address\nT1,40001\n");
 }
 
 CASE(all_keys_are_read)

@@ -55,9 +55,8 @@ CASE(defaults_are_as_documented)
     assert_int_equal(t->scale.kind, SCALING_NONE);
     assert_float_equal(t->validity.stale_s, 5, 0);
     assert_false(t->place.has_position || t->scale.negate || t->place.node);
-    char *folder = plant_prepared_folder(p), *expected = temp_path(f->folder, "plant.prepared");
+    char *folder = test_memory(plant_prepared_folder(p)), *expected = temp_path(f->folder, "plant.prepared");
     assert_string_equal(folder, expected);
-    mem_free(folder);
 }
 
 CASE(a_service_has_folders_of_its_own)
@@ -141,15 +140,14 @@ CASE(everything_is_read)
 
 CASE(names_of_a_long_list_are_found)
 {
-    struct text csv = { 0 };
-    text_add(&csv, "Tag Name,Address\n");
+    struct text *csv = test_text();
+    text_add(csv, "Tag Name,Address\n");
     for (int i = 0; i < 500; i++)
-        text_add(&csv, "TT-%d,hr:%d\n", i * 7919 % 500, i);
-    plant_case_load(f, small_yaml, csv.at);
+        text_add(csv, "TT-%d,hr:%d\n", i * 7919 % 500, i);
+    plant_case_load(f, small_yaml, csv->at);
     plant_case_assert_loaded(f, 0);
     for (int i = 0; i < 500; i++)
         assert_int_equal(plant_find_tag(f->plant, f->plant->tags[i].name), i);
-    text_finish(&csv);
 }
 
 CASE(nodes_are_a_pattern_or_a_list)
@@ -279,18 +277,17 @@ CASE(the_locale_changes_nothing)
 /* Loads small_yaml with its line number `line` replaced by `text` (0: no replacement), together with the tag list `csv`. */
 static void load_csv_with(struct plant_case *f, int line, const char *text, const char *csv)
 {
-    struct text yaml = { 0 };
+    struct text *yaml = test_text();
     const char *p = small_yaml;
     for (int i = 1; *p; i++) {
         size_t length = strcspn(p, "\n") + 1;
         if (i == line)
-            text_add(&yaml, "%s\n", text);
+            text_add(yaml, "%s\n", text);
         else
-            text_add_bytes(&yaml, p, length);
+            text_add_bytes(yaml, p, length);
         p += length;
     }
-    plant_case_load(f, yaml.at, csv);
-    text_finish(&yaml);
+    plant_case_load(f, yaml->at, csv);
 }
 
 static void load_with(struct plant_case *f, int line, const char *text)
@@ -444,18 +441,17 @@ CASE(bad_choices_list_the_allowed)
 
 CASE(assets_may_start_out_of_the_way)
 {
-    struct text yaml = { 0 };
+    struct text *yaml = test_text();
     load_csv_with(f, 2, "assets: [{ id: E, model: m.glb, start: hidden }, { id: F, model: m.glb, start: ghost }, { id: G, model: m.glb }]",
                   small_csv);
     plant_case_assert_loaded(f, 0);
     assert_int_equal(f->plant->assets[0].start, PLANT_START_HIDDEN);
     assert_int_equal(f->plant->assets[1].start, PLANT_START_GHOST);
     assert_int_equal(f->plant->assets[2].start, PLANT_START_SHOWN);
-    text_add(&yaml, "assets:");
+    text_add(yaml, "assets:");
     for (int i = 0; i <= PLANT_STARTS; i++)
-        text_add(&yaml, "\n- { id: A%d, model: m.glb, start: %s }", i, i < PLANT_STARTS ? "shown" : "hidden");
-    load_with(f, 2, yaml.at);
-    text_finish(&yaml);
+        text_add(yaml, "\n- { id: A%d, model: m.glb, start: %s }", i, i < PLANT_STARTS ? "shown" : "hidden");
+    load_with(f, 2, yaml->at);
     FOUND(f, { "plant.yaml", 4099, 37, "start: only the first 4096 assets of the plant file can be hidden or ghosts" });
 }
 
@@ -565,9 +561,7 @@ CASE(time_zones_are_looked_up)
         skip();
     }
     for (size_t i = 0; i < sizeof(wrong) / sizeof(*wrong); i++) {
-        char line[100];
-        snprintf(line, sizeof(line), "plant: { name: P, time_zone: %s }", wrong[i]);
-        load_with(f, 1, line);
+        load_with(f, 1, test_printf("plant: { name: P, time_zone: %s }", wrong[i]));
         FOUND(f, { "plant.yaml", 1, 30, "expected an IANA name such as Europe/Berlin or UTC" });
     }
 }
@@ -688,9 +682,8 @@ CASE(colour_maps_come_from_images)
     static const uint8_t lying[3 * 3] = { 0, 0, 0, 200, 100, 0, 200, 200, 200 }, standing[2 * 3] = { 255, 0, 0, 0, 0, 255 };
     write_image(f, "lying.ppm", 3, 1, lying);
     write_image(f, "standing.ppm", 1, 2, standing);
-    struct text yaml = { 0 };
-    text_add(&yaml, "%scolormaps:\n  - { name: a, image: lying.ppm }\n  - { name: b, image: standing.ppm }\n", small_yaml);
-    plant_case_load(f, yaml.at, small_csv);
+    char *yaml = test_printf("%scolormaps:\n  - { name: a, image: lying.ppm }\n  - { name: b, image: standing.ppm }\n", small_yaml);
+    plant_case_load(f, yaml, small_csv);
     plant_case_assert_loaded(f, 0);
     assert_int_equal(f->plant->display.colormap_count, 2);
     const struct colormap *a = &f->plant->display.colormaps[0], *b = &f->plant->display.colormaps[1];
@@ -698,7 +691,6 @@ CASE(colour_maps_come_from_images)
     assert_true(a->rgb[0][0] == 0 && a->rgb[255][2] == 200 && abs(a->rgb[127][0] - 200) < 3 && abs(a->rgb[127][1] - 100) < 3);
     assert_true(abs(a->rgb[85][0] - 100) < 3); /* half-way between the first two */
     assert_true(b->rgb[0][2] == 255 && b->rgb[255][0] == 255); /* from the bottom up */
-    text_finish(&yaml);
 }
 
 CASE(bad_colour_maps_are_named)

@@ -2,7 +2,6 @@
 /* The plant file's `views` and `walls` sections: parsing, and errors reported with their position. */
 #include "tests/support/test.h"
 
-#include "base/text/text.h"
 #include "message/views_message.h"
 #include "plant/walls/wall.h"
 #include "tests/support/plant_case.h"
@@ -11,12 +10,10 @@
 
 static void load(struct plant_case *c, const char *more)
 {
-    struct text yaml = { 0 };
-    text_add(&yaml, "plant: { name: P }\nassets: [{ id: E-1, model: m.glb }]\n"
+    char *yaml = test_printf("plant: { name: P }\nassets: [{ id: E-1, model: m.glb }]\n"
                     "groups: [{ id: t, unit: degC, min: 0, max: 1 }]\ntags: tags.csv\nsources: [{ id: a, type: modbus, host: h }]\n%s\n",
              more);
-    plant_case_load(c, yaml.at, "Tag Name,Address,Source\nTI-1,40001,a\nTI-2,40003,a\n");
-    text_finish(&yaml);
+    plant_case_load(c, yaml, "Tag Name,Address,Source\nTI-1,40001,a\nTI-2,40003,a\n");
 }
 
 CASE(all_keys_are_read)
@@ -35,7 +32,7 @@ CASE(all_keys_are_read)
     assert_int_equal(c->plant->screens.view_count, 2);
     assert_string_equal(c->plant->screens.views[1].title, "Near by");
     assert_int_equal(c->plant->screens.wall_count, 1);
-    char *text = walls_text(c->plant, NULL);
+    char *text = test_memory(walls_text(c->plant, NULL));
     assert_string_equal(text,
                         "{\"walls\":[{\"id\":\"room\",\"inches\":65.0,\"distance_m\":4.5,\"displays\":[{\"grid\":[\"main main side\","
                         "\"main main low\"],\"panes\":[{\"area\":\"main\",\"kind\":\"views\",\"title\":\"Plant\",\"items\":[\"all\","
@@ -53,7 +50,6 @@ CASE(all_keys_are_read)
                         "\"to_min\":390,\"percent\":40.0}}],\"tours\":[{\"id\":\"round\",\"stops\":[{\"id\":\"near\",\"view\":"
                         "\"group=t&camera=1,2,3\",\"dwell_s\":8.0,\"text\":\"Look here\"},{\"id\":\"all\",\"view\":\"group=t\",\"dwel"
                         "l_s\":15.0,\"text\":null}]}]}");
-    mem_free(text);
 }
 
 CASE(tiles_are_the_first_displays)
@@ -75,11 +71,10 @@ CASE(tiles_are_the_first_displays)
     }
     assert_int_equal(wall->displays[6].panes[0].kind, PANE_CLOCK);
     assert_true(wall_find(c->plant, "two")->tile.bezel_mm[0] == 0 && wall_find(c->plant, "two")->display_count == 2);
-    char *text = walls_text(c->plant, NULL);
+    char *text = test_memory(walls_text(c->plant, NULL));
     assert_non_null(strstr(text, "\"tile\":{\"columns\":3,\"rows\":2,\"number\":6}"));
     assert_non_null(strstr(text, "\"kind\":\"clock\",\"title\":null,\"items\":[\"yes\"],\"every_s\":30.0,\"hours\":8.0,"
                                  "\"on_alarm\":false}"));
-    mem_free(text);
 }
 
 CASE(other_plants_are_read)
@@ -96,9 +91,8 @@ CASE(other_plants_are_read)
     assert_int_equal(other_plant_find(c->plant, "pier"), 1);
     assert_int_equal(other_plant_find(c->plant, "room"), -1);
     assert_true(wall_display_has(wall_display_find(c->plant, "room", 1), PANE_SNAPSHOT, "pier"));
-    char *text = walls_text(c->plant, NULL);
+    char *text = test_memory(walls_text(c->plant, NULL));
     assert_non_null(strstr(text, "\"kind\":\"snapshot\",\"title\":null,\"items\":[\"tanks\"]"));
-    mem_free(text);
 }
 
 CASE(wrong_other_plants_are_said_at_their_place)

@@ -27,24 +27,22 @@ TEST(a_text_is_found_again)
     const struct png_text texts[] = { { "One", "first", 5 }, { "Other", long_text, sizeof(long_text) }, { "Empty", "", 0 } };
     size_t count, length;
     char why[PNG_PLAIN_WHY_BYTES];
-    uint8_t *with = png_text_add(file.bytes, file.count, texts, 3, &count);
+    uint8_t *with = test_memory(png_text_add(file.bytes, file.count, texts, 3, &count));
     assert_non_null(with);
     assert_true(count < file.count + 300);
     assert_true(png_is_plain(with, count, (const char *const[]){ "One", "Other", "Empty" }, 3, why));
     assert_false(png_is_plain(with, count, (const char *const[]){ "One", "Other" }, 2, why));
     for (int i = 0; i < 3; i++) {
-        char *found = png_text_find(with, count, texts[i].keyword, sizeof(long_text), &length);
+        char *found = test_memory(png_text_find(with, count, texts[i].keyword, sizeof(long_text), &length));
         assert_non_null(found);
         assert_int_equal(length, texts[i].length);
         assert_memory_equal(found, texts[i].text, length);
-        mem_free(found);
     }
     assert_null(png_text_find(with, count, "Oth", 100, &length));
     assert_null(png_text_find(with, count, "Other", sizeof(long_text) - 1, &length));
     png_image image = { .version = PNG_IMAGE_VERSION };
     assert_true(png_image_begin_read_from_memory(&image, with, count));
     png_image_free(&image);
-    mem_free(with);
 }
 
 TEST(of_two_with_one_keyword_none_is_taken)
@@ -52,9 +50,8 @@ TEST(of_two_with_one_keyword_none_is_taken)
     struct png_bytes file = picture();
     const struct png_text texts[] = { { "One", "first", 5 }, { "One", "second", 6 } };
     size_t count, length;
-    uint8_t *with = png_text_add(file.bytes, file.count, texts, 2, &count);
+    uint8_t *with = test_memory(png_text_add(file.bytes, file.count, texts, 2, &count));
     assert_null(png_text_find(with, count, "One", 100, &length));
-    mem_free(with);
 }
 
 TEST(what_is_cut_or_damaged_is_refused)
@@ -63,7 +60,7 @@ TEST(what_is_cut_or_damaged_is_refused)
     const struct png_text text = { "One", "first", 5 };
     size_t count, length;
     char why[PNG_PLAIN_WHY_BYTES];
-    uint8_t *with = png_text_add(file.bytes, file.count, &text, 1, &count);
+    uint8_t *with = test_memory(png_text_add(file.bytes, file.count, &text, 1, &count));
     for (size_t i = 0; i < count; i++) {
         uint8_t *cut = mem_array(i, 1);
         if (i)
@@ -76,6 +73,5 @@ TEST(what_is_cut_or_damaged_is_refused)
         with[i] ^= 0x55;
     }
     assert_true(png_is_plain(with, count, &text.keyword, 1, why));
-    mem_free(with);
     assert_null(png_text_add((const uint8_t *)"GIF89a", 6, &text, 1, &count));
 }

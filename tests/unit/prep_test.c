@@ -50,29 +50,27 @@ static const char moved_node[] = "\"scenes\":[{\"nodes\":[0,1,2]}],\"nodes\":[{\
 static void write_model(struct prep_case *s, const char *nodes)
 {
     const uint32_t vertices = (ACROSS + 1) * (UP + 1), indices = ACROSS * UP * 6;
-    struct text bin = { 0 };
+    struct text *bin = test_text();
     for (uint32_t y = 0; y <= UP; y++)
         for (uint32_t x = 0; x <= ACROSS; x++) {
             const float p[3] = { 2.0f * (float)x / (float)ACROSS, (float)y / (float)UP, 0 };
-            text_add_bytes(&bin, p, sizeof(p));
+            text_add_bytes(bin, p, sizeof(p));
         }
     for (uint32_t y = 0; y < UP; y++)
         for (uint32_t x = 0; x < ACROSS; x++) {
             uint32_t a = y * (ACROSS + 1) + x, c = a + ACROSS + 1;
             const uint32_t six[6] = { a, a + 1, c, c, a + 1, c + 1 };
-            text_add_bytes(&bin, six, sizeof(six));
+            text_add_bytes(bin, six, sizeof(six));
         }
     char *json = test_printf(
         "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":%u}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":%u}],"
         "%s\"meshes\":[{\"primitives\":[{\"attributes\":"
         "{\"POSITION\":0},\"indices\":1}]}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":%u,\"type\":\"VEC3\"},"
         "{\"bufferView\":0,\"byteOffset\":%u,\"componentType\":5125,\"count\":%u,\"type\":\"SCALAR\"}]}",
-        (unsigned)bin.length, (unsigned)bin.length, nodes, vertices, 12 * vertices, indices);
+        (unsigned)bin->length, (unsigned)bin->length, nodes, vertices, 12 * vertices, indices);
     size_t size;
-    char *glb = glb_build(json, bin.at, bin.length, &size);
+    char *glb = test_memory(glb_build(json, bin->at, bin->length, &size));
     temp_write(s->folder, "model.glb", glb, size);
-    mem_free(glb);
-    text_finish(&bin);
 }
 
 static int set_up(void **state)
@@ -108,12 +106,11 @@ static void assert_states(struct prep_case *s, const char *a, const char *b, con
 
 static char *file_of(struct prep_case *s, size_t asset)
 {
-    struct text text = { 0 };
-    prep_case_read(s, "plant.prepared/manifest.json", &text);
-    json_t *manifest = prep_case_json(&text);
+    struct text *text = test_text();
+    prep_case_read(s, "plant.prepared/manifest.json", text);
+    json_t *manifest = prep_case_json(text);
     char *name = mem_printf("%s/plant.prepared/%s", s->folder, json_string_value(json_object_get(asset_of(manifest, asset), "file")));
     assert_int_equal(json_integer_value(json_object_get(manifest, "format")), 2);
-    text_finish(&text);
     return name;
 }
 
@@ -124,7 +121,7 @@ CASE(a_plant_is_prepared)
     prep_case_says(&s->err, "tags.csv:6: warning");
     assert_null(strchr(s->err.at, '\r'));
     assert_null(strchr(s->err.at, 27));
-    char *a = file_of(s, 0), *b = file_of(s, 1), *c = file_of(s, 2);
+    char *a = test_memory(file_of(s, 0)), *b = test_memory(file_of(s, 1)), *c = test_memory(file_of(s, 2));
     /* A and B are instances of one mesh with sensors at the same positions on it, so they share one asset file */
     assert_string_equal(a, b);
     assert_string_not_equal(a, c);
@@ -146,50 +143,42 @@ CASE(a_plant_is_prepared)
         assert_float_equal(asset_distance_m(v, 1, i), hypotf(2 - x, 1 - y), 1e-3);
     }
     folder_close(&file);
-    mem_free(a);
-    mem_free(b);
-    mem_free(c);
 }
 
 CASE(a_second_run_does_nothing)
 {
     struct stat before, after;
     assert_states(s, "built", "shared", "built");
-    char *a = file_of(s, 0);
+    char *a = test_memory(file_of(s, 0));
     assert_int_equal(stat(a, &before), 0);
     assert_states(s, "unchanged", "shared", "unchanged");
     assert_int_equal(stat(a, &after), 0);
     assert_int_equal(before.st_ino, after.st_ino);
-    mem_free(a);
 }
 
 CASE(damaged_files_are_made_anew_and_said)
 {
     prep_case_expect(s, "$PLANT", 0);
-    char *a = file_of(s, 0), *c = file_of(s, 2);
+    char *a = test_memory(file_of(s, 0)), *c = test_memory(file_of(s, 2));
     assert_int_equal(truncate(a, 1000), 0);
     size_t size;
-    char *bytes = text_read_file(c, (size_t)1 << 30, &size);
+    char *bytes = test_memory(text_read_file(c, (size_t)1 << 30, &size));
     bytes[size / 2] ^= 1;
     assert_int_equal(atomic_file_put(c, bytes, size), 0);
-    mem_free(bytes);
     prep_case_expect(s, "$PLANT", 0);
     prep_case_says(&s->err, "truncated: 1000 bytes");
     prep_case_says(&s->err, "checksum");
     assert_states(s, "unchanged", "shared", "unchanged");
-    mem_free(a);
-    mem_free(c);
 }
 
 CASE(only_what_changed_is_made_anew)
 {
     prep_case_expect(s, "$PLANT", 0);
-    char *old = file_of(s, 0);
+    char *old = test_memory(file_of(s, 0));
     prep_case_tags(s, "T1,400001,Float,plc,temperature,A,,0.5,0,0\nT5,400009,Float,plc,temperature,C,,1,0.5,0.4\n");
     assert_states(s, "built", "built", "unchanged");
     /* the tag list changed A's file and no asset uses the old one any more: it must be deleted */
     assert_int_not_equal(access(old, F_OK), 0);
-    mem_free(old);
 }
 
 static void group_says(struct prep_case *s, const char *more)
@@ -203,14 +192,13 @@ static void group_says(struct prep_case *s, const char *more)
 static size_t triangles_of_first(struct prep_case *s)
 {
     struct folder_file file;
-    char why[200], *name = file_of(s, 0), *folder = temp_path(s->folder, "plant.prepared");
+    char why[200], *name = test_memory(file_of(s, 0)), *folder = temp_path(s->folder, "plant.prepared");
     assert_int_equal(folder_open(&file, folder, strtoull(strrchr(name, '/') + 1, NULL, 16), why), 1);
     const struct asset_view *v = &file.view;
     size_t indices = 0;
     for (uint32_t p = 0; p < v->levels[0].primitive_count; p++)
         indices += v->primitives[v->levels[0].first_primitive + p].index_count;
     folder_close(&file);
-    mem_free(name);
     return indices / 3;
 }
 
@@ -297,8 +285,7 @@ CASE(distances_are_printed)
     for (char *line = strchr(s->out.at, '\n') + 1; *line; line = strchr(line, '\n') + 1) {
         double x, y, z, geodesic_m, euclidean_m;
         assert_int_equal(sscanf(line, "%lf,%lf,%lf,%lf,%lf", &x, &y, &z, &geodesic_m, &euclidean_m), 5);
-        /* expects distances from T3, which is on B at x = 10 in the plant frame */
-        assert_float_equal(euclidean_m, hypot(x - 10, y), 1e-5);
+        assert_float_equal(euclidean_m, hypot(x - 10, y), 1e-5); /* expects distances from T3, which is on B at x = 10 in the plant frame */
         assert_float_equal(geodesic_m, euclidean_m, 1e-3);
         lines++;
     }
@@ -313,9 +300,8 @@ CASE(distances_are_printed)
 CASE(textures_are_read)
 {
     struct prep_case *c = s;
-    struct wavy_sheet sheet;
+    struct wavy_sheet sheet = sheet_create(8, 4);
     struct seed seed = { 0 };
-    sheet_init(&sheet, 8, 4);
     for (int i = 0; i < SEED_COUNT && (!seed.name || strcmp(seed.name, "textured.glb") != 0); i++) {
         mem_free(seed.bytes);
         seed_make(&seed, i, &sheet);
@@ -347,7 +333,6 @@ CASE(textures_are_read)
     mem_free(copy);
     mem_free(bin);
     mem_free(seed.bytes);
-    sheet_finish(&sheet);
 }
 
 /* With shepard, a single sensor gives a constant field, so no triangles are subdivided. With `interpolation: paper` or
@@ -447,8 +432,7 @@ CASE(what_is_wrong_is_said_with_its_place)
     prep_case_says(&s->err, "no node's name matches 'tank*'");
     prep_case_says(&s->err, "plant.yaml:7: error: asset E:");
     prep_case_says(&s->err, "truncated GLB: 4 bytes");
-    /* the manifest lists the valid assets with their files, and states for the others why they are missing */
-    struct text manifest = { 0 };
+    struct text manifest = { 0 }; /* the manifest lists the valid assets with their files, and states for the others why they are missing */
     prep_case_read(s, "plant.prepared/manifest.json", &manifest);
     json_t *root = prep_case_json(&manifest);
     for (size_t i = 0; i < 5; i++)

@@ -13,11 +13,8 @@ static struct plant *plant_of_registers(const int *registers, size_t count, enum
 {
     struct plant *plant = plant_by_hand_create(count);
     plant_by_hand_source(plant, "a", 1);
-    for (size_t i = 0; i < count; i++) {
-        char name[24];
-        snprintf(name, sizeof(name), "t%zu", i);
-        plant_by_hand_tag(plant, name, table, registers[i], type);
-    }
+    for (size_t i = 0; i < count; i++)
+        plant_by_hand_tag(plant, test_printf("t%zu", i), table, registers[i], type);
     return plant;
 }
 
@@ -196,8 +193,7 @@ TEST(random_tag_lists_obey_the_rules)
         source->max_registers = round % 3 ? 4 + rand() % 122 : 125;
         source->max_bits = round % 5 ? 4 + rand() % 1997 : 2000;
         for (size_t i = 0; i < count; i++) {
-            char name[24];
-            snprintf(name, sizeof(name), "t%zu", i);
+            char *name = test_printf("t%zu", i);
             enum register_table table = rand() % 4 ? TABLE_HOLDING : TABLE_COIL;
             plant_by_hand_tag(plant, name, table, rand() % REGISTERS, types[rand() % 3]);
         }

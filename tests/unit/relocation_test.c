@@ -6,7 +6,6 @@
 #include "tests/support/test.h"
 #include <pthread.h>
 #include <stdatomic.h>
-#include <unistd.h>
 
 #include "base/clock.h"
 #include "base/files/cache_file.h"
@@ -231,11 +230,10 @@ TEST(a_moved_sensor_has_the_distances_that_would_be_stored)
     struct relocation_shape shape = finest_of(asset);
     char *path = prep_case_file(*state, ".surface", &shape.surface_key);
     shape.surface_path = path;
-    enum sight *sights = sights_of(&shape);
+    enum sight *sights = test_memory(sights_of(&shape));
     try_sensors(asset, &shape, sights, as_stored);
     shape.surface_key++; /* the key no longer fits the stored surface, so it must not be used but be computed again */
     try_sensors(asset, &shape, sights, as_made_anew);
-    mem_free(sights);
     asset_unref(&asset);
 }
 
@@ -251,13 +249,13 @@ static struct relocation_shape shape_of(const struct cad *cad)
 
 TEST(a_point_that_is_far_away_is_refused)
 {
-    struct cad plate = { 0 };
+    struct cad *plate = test_cad();
     struct cad_random chance = { 5 };
     struct relocation_place place;
     struct result_box box;
     box_init(&box);
-    cad_plate(&plate, &chance, 20, 20, 1, 1, 0);
-    struct relocation_shape shape = shape_of(&plate);
+    cad_plate(plate, &chance, 20, 20, 1, 1, 0);
+    struct relocation_shape shape = shape_of(plate);
     struct relocation *relocation = relocation_create(the_log, workers, &shape);
     assert_true(relocation_place(relocation, (const double[3]){ 0.3, 0.6, 1.2 }, &place, NULL));
     assert_float_equal(place.distance_m, 1.2, 1e-6);
@@ -268,7 +266,6 @@ TEST(a_point_that_is_far_away_is_refused)
     assert_int_equal(relocation_request(relocation, (const double[3]){ 0.3, INFINITY, 0 }, put_into_box, &box), 0);
     relocation_destroy(&relocation);
     assert_int_equal(box.count, 0);
-    cad_finish(&plate);
 }
 
 TEST(an_asset_without_surface_is_said_to_be_broken)
@@ -350,17 +347,17 @@ static void try_walks_without_memory(struct relocation *relocation, const struct
 TEST(without_memory_it_says_so_and_goes_on)
 {
     struct prep_case *c = *state;
-    struct cad plate = { 0 };
+    struct cad *plate = test_cad();
     struct cad_random chance = { 8 };
-    struct text packed = { 0 };
+    struct text *packed = test_text();
     struct log *quiet = log_create(LOG_ERROR + 1);
-    cad_plate(&plate, &chance, 20, 20, 1, 1, 0);
-    struct relocation_shape shape = shape_of(&plate);
+    cad_plate(plate, &chance, 20, 20, 1, 1, 0);
+    struct relocation_shape shape = shape_of(plate);
     struct surface *surface = surface_create(quiet, NULL, shape.positions_m, shape.vertex_count, shape.triangles, shape.triangle_count,
                                              &(struct surface_params){ 0 });
     char *path = temp_path(c->folder, "plate.surface");
-    surface_pack(surface, &packed);
-    const struct atomic_file_part part = { packed.at, packed.length };
+    surface_pack(surface, packed);
+    const struct atomic_file_part part = { packed->at, packed->length };
     assert_int_equal(cache_file_write_compressed(path, SURFACE_MAGIC, 7, &part, 1), 0);
     for (int kept = 0; kept < 2; kept++) {
         int broken = 0, warm = 0;
@@ -380,15 +377,13 @@ TEST(without_memory_it_says_so_and_goes_on)
             warm += reached && relocation_state(relocation) == RELOCATION_WARM;
             mem_free(box.result.geodesic_m);
             if (!reached)
-                try_walks_without_memory(relocation, &plate);
+                try_walks_without_memory(relocation, plate);
             relocation_destroy(&relocation);
         }
         print_message("# getting warm asks for memory %d times: broken %d times without\n", broken + warm, broken);
         assert_true(kept ? warm >= 10 : broken >= 1);
     }
     surface_destroy(&surface);
-    text_finish(&packed);
-    cad_finish(&plate);
     log_destroy(&quiet);
 }
 
@@ -400,15 +395,15 @@ static void hold(void *arg)
 
 TEST(what_waits_is_cancelled)
 {
-    struct cad plate = { 0 };
+    struct cad *plate = test_cad();
     struct cad_random chance = { 6 };
     struct result_box kept, cancelled, dropped;
     pthread_mutex_t gate = PTHREAD_MUTEX_INITIALIZER;
     box_init(&kept);
     box_init(&cancelled);
     box_init(&dropped);
-    cad_plate(&plate, &chance, 40, 40, 1, 1, 0);
-    struct relocation_shape shape = shape_of(&plate);
+    cad_plate(plate, &chance, 40, 40, 1, 1, 0);
+    struct relocation_shape shape = shape_of(plate);
     struct workers *one = test_workers(1);
     pthread_mutex_lock(&gate);
     /* blocks the only worker until the gate opens, so that the preparation of the surface cannot begin */
@@ -425,8 +420,8 @@ TEST(what_waits_is_cancelled)
     pthread_mutex_unlock(&gate);
     wait_for(&kept, 1);
     assert_int_equal(kept.result.status, RELOCATION_DONE);
-    for (size_t v = 0; v < plate.vertex_count; v++)
-        assert_float_equal(kept.result.geodesic_m[v], hypot((double)plate.positions[v][0] - 0.25, (double)plate.positions[v][1] - 0.5),
+    for (size_t v = 0; v < plate->vertex_count; v++)
+        assert_float_equal(kept.result.geodesic_m[v], hypot((double)plate->positions[v][0] - 0.25, (double)plate->positions[v][1] - 0.5),
                            1e-4);
     pthread_mutex_lock(&gate);
     workers_submit(one, hold, &gate);
@@ -437,7 +432,6 @@ TEST(what_waits_is_cancelled)
     assert_int_equal(cancelled.count, 1);
     mem_free(kept.result.geodesic_m);
     mem_free(dropped.result.geodesic_m);
-    cad_finish(&plate);
 }
 
 struct relocation_crowd {
@@ -462,14 +456,14 @@ static void *drag(void *arg)
 
 TEST(every_ask_is_answered_once)
 {
-    struct cad plate = { 0 };
+    struct cad *plate = test_cad();
     struct cad_random chance = { 7 };
     struct result_box box;
     pthread_t threads[3];
     struct relocation_crowd crowds[3];
     box_init(&box);
-    cad_plate(&plate, &chance, 30, 30, 1, 1, 0);
-    struct relocation_shape shape = shape_of(&plate);
+    cad_plate(plate, &chance, 30, 30, 1, 1, 0);
+    struct relocation_shape shape = shape_of(plate);
     struct relocation *relocation = relocation_create(the_log, workers, &shape);
     for (int i = 0; i < 3; i++) {
         crowds[i] = (struct relocation_crowd){ relocation, &box, 11 + (uint64_t)i };
@@ -482,7 +476,6 @@ TEST(every_ask_is_answered_once)
     assert_int_equal(box.count, 150);
     assert_true(box.done_count >= 150 - 3 * 17);
     mem_free(box.result.geodesic_m);
-    cad_finish(&plate);
 }
 
 TEST_GROUP(set_up, tear_down)

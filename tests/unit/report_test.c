@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The report of plantcast-prep on models with known numbers. */
 #include "tests/support/test.h"
-#include <unistd.h>
 
 #include "preprocess/pipeline/progress.h"
 #include "preprocess/report/text_table.h"
@@ -45,8 +44,7 @@ static int set_up(void **state)
     boxes_add(&maker, "inside-1", (const double[3]){ 20, 0, 0 }, (const double[3]){ 24, 4, 4 });
     boxes_add(&maker, "inside-2", (const double[3]){ 21, 1, 1 }, (const double[3]){ 22, 2, 2 });
     boxes_add(&maker, "bare", (const double[3]){ 30, 0, 0 }, (const double[3]){ 31, 1, 1 });
-    boxes_write(&maker, c->folder, "model.glb");
-    maker_finish(&maker);
+    maker_write(&maker, c->folder, "model.glb");
     prep_case_plant(c, plant_text);
     prep_case_tags(c, tags_rows);
     return 0;

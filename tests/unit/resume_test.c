@@ -3,7 +3,6 @@
    assets that were finished and prepare only the others. */
 #include "tests/support/test.h"
 #include <dirent.h>
-#include <errno.h>
 #include <fcntl.h>
 #include <pty.h>
 #include <signal.h>
@@ -138,21 +137,20 @@ CASE(interrupted_it_finishes_what_it_has_begun)
 /* On a terminal, progress is one line that is updated and erased at the end. */
 CASE(a_terminal_shows_one_line)
 {
-    struct text seen = { 0 };
+    struct text *seen = test_text();
     char bytes[4096];
     int master, terminal, status;
     assert_int_equal(openpty(&master, &terminal, NULL, NULL, NULL), 0);
     pid_t pid = start(c, terminal);
     close(terminal);
     for (ssize_t got; (got = read(master, bytes, sizeof(bytes))) > 0;)
-        text_add_bytes(&seen, bytes, (size_t)got);
+        text_add_bytes(seen, bytes, (size_t)got);
     close(master);
     assert_int_equal(waitpid(pid, &status, 0), pid);
     assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 0);
-    prep_case_says(&seen, "preparing 40 of 40 assets");
-    prep_case_says(&seen, "\r");
-    prep_case_says(&seen, " of 40 assets prepared, ");
-    prep_case_says(&seen, " left\033[K");
-    assert_string_equal(seen.at + seen.length - 4, "\r\033[K");
-    text_finish(&seen);
+    prep_case_says(seen, "preparing 40 of 40 assets");
+    prep_case_says(seen, "\r");
+    prep_case_says(seen, " of 40 assets prepared, ");
+    prep_case_says(seen, " left\033[K");
+    assert_string_equal(seen->at + seen->length - 4, "\r\033[K");
 }

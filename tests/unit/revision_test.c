@@ -84,21 +84,18 @@ static int apply(const char *folder)
 
 static int undo(const char *folder, bool forced)
 {
-    struct text changed = { 0 }, done = { 0 };
-    int lock = take(folder, NULL), status = lock < 0 ? lock : revision_files_undo(folder, forced, &changed, &done);
+    struct text *changed = test_text(), *done = test_text();
+    int lock = take(folder, NULL), status = lock < 0 ? lock : revision_files_undo(folder, forced, changed, done);
     if (lock >= 0)
         close(lock);
-    text_finish(&changed);
-    text_finish(&done);
     return status;
 }
 
 static bool says(const char *folder, const char *name, const char *text)
 {
     size_t bytes;
-    char *path = test_printf("%s/%s", folder, name), *now = text_read_file(path, 100, &bytes);
+    char *path = test_printf("%s/%s", folder, name), *now = test_memory(text_read_file(path, 100, &bytes));
     bool same = text ? now && !strcmp(now, text) : !now;
-    mem_free(now);
     return same;
 }
 
@@ -265,7 +262,7 @@ TEST(the_plant_file_stays_as_people_wrote_it)
     const struct asset_edit edits[] = {
         { .tag = mem_strdup("E-102") }, { .nodes = pump, .node_count = 2 }, { .nodes = vessel, .node_count = 2 }, { .removed = true }
     };
-    char *out = asset_edit_apply(text, edits, 4, "  - { id: \"new\" }\n", why);
+    char *out = test_memory(asset_edit_apply(text, edits, 4, "  - { id: \"new\" }\n", why));
     assert_string_equal(out, "plant: { name: \"Größe\" }\n"
                              "assets:\n"
                              "  # the feed\n"
@@ -280,7 +277,6 @@ TEST(the_plant_file_stays_as_people_wrote_it)
                              "\n"
                              "# end\n"
                              "tags: tags.csv\n");
-    mem_free(out);
     assert_null(asset_edit_apply("assets: [{ id: a }]\n", &(struct asset_edit){ .removed = true }, 1, NULL, why));
     assert_string_equal(why, "import can edit the lists `assets` and `nodes` in the plant file only if each item is on a line of its own");
     mem_free(pump[1]);
@@ -310,7 +306,7 @@ TEST(an_asset_goes_with_all_its_keys)
                                "    }\n"
                                "tags: tags.csv\n";
     const struct asset_edit edits[] = { { 0 }, { .removed = true }, { 0 }, { .removed = true } };
-    char why[ASSET_EDIT_WHY_BYTES], *out = asset_edit_apply(text, edits, 4, NULL, why);
+    char why[ASSET_EDIT_WHY_BYTES], *out = test_memory(asset_edit_apply(text, edits, 4, NULL, why));
     assert_string_equal(out, "assets:\n"
                              "  - id: P-1\n"
                              "    model: m.glb\n"
@@ -320,5 +316,4 @@ TEST(an_asset_goes_with_all_its_keys)
                              "  - id: V-1\n"
                              "    model: m.glb\n"
                              "tags: tags.csv\n");
-    mem_free(out);
 }

@@ -237,7 +237,7 @@ static size_t open_edges(const struct cad_model *model)
    closed body. */
 TEST(test_a_pipe_run_is_closed)
 {
-    struct text file = { 0 };
+    struct text *file = test_text();
     struct rvm_counts counts;
     double c = cos(0.7), s = sin(0.7);
     /* The elbow makes a quarter turn from (offset, 0, 0) to (0, offset, 0), all rotated about x by 0.7. */
@@ -251,20 +251,20 @@ TEST(test_a_pipe_run_is_closed)
     memcpy(fourth, second, sizeof(fourth));
     third[9] = -1.2;
     fourth[9] = -1.4;
-    add_head(&file);
-    add_group(&file, "/PIPE");
-    add_primitive(&file, RVM_CIRCULAR_TORUS, turned, (double[]){ 300, 100, M_PI / 2 });
-    add_group(&file, "/PIPE/1");
-    add_primitive(&file, RVM_CYLINDER, first, (double[]){ 100, 1000 });
-    end_group(&file);
-    add_group(&file, "/PIPE/2");
-    add_primitive(&file, RVM_CYLINDER, second, (double[]){ 100, 1000 });
-    add_primitive(&file, RVM_SNOUT, third, (double[]){ 100, 50, 400, 0, 0, 0, 0, 0, 0 });
-    add_primitive(&file, RVM_ELLIPTICAL_DISH, fourth, (double[]){ 50, 25 });
-    end_group(&file);
-    end_group(&file);
-    begin(&file, "END:");
-    struct cad_model *model = read_text(&file, &counts);
+    add_head(file);
+    add_group(file, "/PIPE");
+    add_primitive(file, RVM_CIRCULAR_TORUS, turned, (double[]){ 300, 100, M_PI / 2 });
+    add_group(file, "/PIPE/1");
+    add_primitive(file, RVM_CYLINDER, first, (double[]){ 100, 1000 });
+    end_group(file);
+    add_group(file, "/PIPE/2");
+    add_primitive(file, RVM_CYLINDER, second, (double[]){ 100, 1000 });
+    add_primitive(file, RVM_SNOUT, third, (double[]){ 100, 50, 400, 0, 0, 0, 0, 0, 0 });
+    add_primitive(file, RVM_ELLIPTICAL_DISH, fourth, (double[]){ 50, 25 });
+    end_group(file);
+    end_group(file);
+    begin(file, "END:");
+    struct cad_model *model = read_text(file, &counts);
     assert_int_equal(counts.primitives, 5);
     assert_int_equal(counts.covered_faces, 8);
     assert_int_equal(open_edges(model), 0);
@@ -272,133 +272,126 @@ TEST(test_a_pipe_run_is_closed)
     assert_string_equal(model->nodes[2].name, "/PIPE/2");
     assert_int_equal(model->nodes[2].parent, 0);
     cad_model_destroy(&model);
-    text_finish(&file);
 }
 
 TEST(test_a_polygon_keeps_its_hole)
 {
-    struct text file = { 0 };
+    struct text *file = test_text();
     struct rvm_counts counts;
     static const double outer[4][2] = { { 0, 0 }, { 2000, 0 }, { 2000, 2000 }, { 0, 2000 } };
     static const double inner[4][2] = { { 500, 500 }, { 500, 1500 }, { 1500, 1500 }, { 1500, 500 } };
-    add_head(&file);
-    add_group(&file, "/G");
-    size_t at = begin_primitive(&file, "PRIM", RVM_FACETS, in_place);
-    add_word(&file, 1);
-    add_word(&file, 2);
+    add_head(file);
+    add_group(file, "/G");
+    size_t at = begin_primitive(file, "PRIM", RVM_FACETS, in_place);
+    add_word(file, 1);
+    add_word(file, 2);
     for (int contour = 0; contour < 2; contour++) {
-        add_word(&file, 4);
+        add_word(file, 4);
         for (int i = 0; i < 4; i++)
             for (int number = 0; number < 6; number++)
-                add_float(&file, number < 2 ? (contour ? inner : outer)[i][number] : number == 5);
+                add_float(file, number < 2 ? (contour ? inner : outer)[i][number] : number == 5);
     }
-    end(&file, at);
-    end_group(&file);
-    begin(&file, "END:");
-    struct cad_model *model = read_text(&file, &counts);
+    end(file, at);
+    end_group(file);
+    begin(file, "END:");
+    struct cad_model *model = read_text(file, &counts);
     assert_true(fabs(area_m2(&model->nodes[0]) - 3) < 1e-6);
     assert_true((double)model->nodes[0].vertices[0].normal[2] > 0.99);
     cad_model_destroy(&model);
-    text_finish(&file);
 }
 
 TEST(test_what_is_not_shown_is_named)
 {
-    struct text file = { 0 };
+    struct text *file = test_text();
     struct rvm_counts counts;
-    add_head(&file);
-    add_group(&file, "/G");
+    add_head(file);
+    add_group(file, "/G");
     for (int i = 0; i < 2; i++) {
-        size_t at = begin_primitive(&file, i ? "OBST" : "INSU", RVM_BOX, in_place);
-        add_word(&file, 50U << 24);
+        size_t at = begin_primitive(file, i ? "OBST" : "INSU", RVM_BOX, in_place);
+        add_word(file, 50U << 24);
         for (int side = 0; side < 3; side++)
-            add_float(&file, 100);
-        end(&file, at);
+            add_float(file, 100);
+        end(file, at);
     }
-    size_t at = begin_primitive(&file, "PRIM", 99, in_place);
-    end(&file, at);
-    at = begin(&file, "WHAT");
-    add_string(&file, "is this");
-    end(&file, at);
-    add_primitive(&file, RVM_SPHERE, in_place, (double[]){ 0 });
-    add_primitive(&file, RVM_BOX, in_place, (double[]){ NAN, 1, 1 });
-    end_group(&file);
-    end_group(&file); /* one too many */
-    add_group(&file, "/H");
-    add_primitive(&file, RVM_CYLINDER, in_place, (double[]){ 50, 0 });
-    add_primitive(&file, RVM_CYLINDER, in_place, (double[]){ -50, 100 });
-    end_group(&file);
-    struct text said = { 0 };
+    size_t at = begin_primitive(file, "PRIM", 99, in_place);
+    end(file, at);
+    at = begin(file, "WHAT");
+    add_string(file, "is this");
+    end(file, at);
+    add_primitive(file, RVM_SPHERE, in_place, (double[]){ 0 });
+    add_primitive(file, RVM_BOX, in_place, (double[]){ NAN, 1, 1 });
+    end_group(file);
+    end_group(file); /* one too many */
+    add_group(file, "/H");
+    add_primitive(file, RVM_CYLINDER, in_place, (double[]){ 50, 0 });
+    add_primitive(file, RVM_CYLINDER, in_place, (double[]){ -50, 100 });
+    end_group(file);
+    struct text *said = test_text();
     struct rvm_params naming = params;
-    naming.findings = &said;
-    struct cad_model *model = read_with(&file, &naming, &counts);
+    naming.findings = said;
+    struct cad_model *model = read_with(file, &naming, &counts);
     assert_int_equal(counts.unknown_kinds, 1);
     assert_string_equal(counts.unknown_chunk, "WHAT at byte 512");
     assert_int_equal(counts.empty, 3);
     assert_int_equal(model->nodes[0].triangle_count, 0);
-    assert_string_equal(said.at,
+    assert_string_equal(said->at,
                         "lost\tbyte 408\t/G\tgroup\t\t3 of the 3 primitives of the group are left out: primitive at byte 408: "
                         "unknown kind of primitive\n"
                         "error\t1\tRVM: /H: 1 of the 2 primitives of the group is left out: cylinder at byte 992: "
                         "its dimensions in the RVM file are zero, negative or contradictory\n"
                         "left out: 1 obstruction volume of /G\nleft out: 1 insulation volume of /G\n");
     cad_model_destroy(&model);
-    text_finish(&file);
-    text_finish(&said);
 }
 
 TEST(test_names_that_are_not_utf8_are_latin1)
 {
-    struct text file = { 0 };
+    struct text *file = test_text();
     struct rvm_counts counts;
-    add_head(&file);
-    add_group(&file, "/PI\xc8"
+    add_head(file);
+    add_group(file, "/PI\xc8"
                      "CE\x07");
-    end_group(&file);
-    struct cad_model *model = read_text(&file, &counts);
+    end_group(file);
+    struct cad_model *model = read_text(file, &counts);
     assert_string_equal(model->nodes[0].name, "/PIÈCE ");
     cad_model_destroy(&model);
-    text_finish(&file);
 }
 
 TEST(test_a_long_name_stays_whole)
 {
-    struct text file = { 0 }, name = { 0 };
+    struct text *file = test_text(), *name = test_text();
     struct rvm_counts counts;
-    while (name.length < 5000)
-        text_add(&name, "펌");
-    add_head(&file);
-    add_group(&file, name.at);
-    end_group(&file);
-    struct cad_model *model = read_text(&file, &counts);
-    assert_string_equal(model->nodes[0].name, name.at);
+    while (name->length < 5000)
+        text_add(name, "펌");
+    add_head(file);
+    add_group(file, name->at);
+    end_group(file);
+    struct cad_model *model = read_text(file, &counts);
+    assert_string_equal(model->nodes[0].name, name->at);
     cad_model_destroy(&model);
-    text_finish(&file);
-    text_finish(&name);
 }
 
 /* Damaged RVM files: cut off at each byte, or with one of the first 4,096 bytes set to 255. Each must be read completely or
    refused with the position of the faulty byte. */
 TEST(test_broken_files_are_refused_at_a_byte)
 {
-    struct text file = { 0 };
+    struct text *file = test_text();
     struct rvm_counts counts;
     size_t refused = 0;
-    add_head(&file);
+    add_head(file);
     for (int i = 0; i < 6; i++) {
-        add_group(&file, "/GROUP");
-        add_primitive(&file, RVM_CYLINDER, in_place, (double[]){ 100, 1000 });
+        add_group(file, "/GROUP");
+        add_primitive(file, RVM_CYLINDER, in_place, (double[]){ 100, 1000 });
     }
     for (int i = 0; i < 6; i++)
-        end_group(&file);
-    begin(&file, "END:");
-    for (size_t i = 0; i < 2 * file.length; i++) {
-        size_t length = i < file.length ? i : file.length;
+        end_group(file);
+    begin(file, "END:");
+    for (size_t i = 0; i < 2 * file->length; i++) {
+        size_t length = i < file->length ? i : file->length;
         char *copy = malloc(length + 1), why[256]; /* exactly sized, so that the sanitizer detects an overrun */
         assert_non_null(copy);
-        memcpy(copy, file.at, length);
-        if (i >= file.length)
-            copy[i - file.length] = (char)0xff;
+        memcpy(copy, file->at, length);
+        if (i >= file->length)
+            copy[i - file->length] = (char)0xff;
         struct cad_model *model = cad_model_create();
         if (!rvm_read(model, copy, length, &params, &counts, why, sizeof(why))) {
             assert_true(strncmp(why, "byte ", 5) == 0);
@@ -407,6 +400,5 @@ TEST(test_broken_files_are_refused_at_a_byte)
         cad_model_destroy(&model);
         free(copy);
     }
-    assert_true(refused > file.length);
-    text_finish(&file);
+    assert_true(refused > file->length);
 }

@@ -82,23 +82,20 @@ static void write_manifest(const struct scene_fixture *f, const char *text)
 /* Writes a manifest that lists all assets in reverse order, all with the same file. */
 static void write_good_manifest(const struct scene_fixture *f)
 {
-    struct text text = { 0 };
+    struct text *text = test_text();
     uint64_t model;
     assert_true(plant_model_hash(f->plant->assets[0].model, &model));
-    text_add(&text, "{\"format\": 2, \"assets\": [");
+    text_add(text, "{\"format\": 2, \"assets\": [");
     for (size_t i = f->plant->asset_count; i-- > 0;)
-        text_add(&text, "{\"id\": \"%s\", \"file\": \"1.asset\", \"recipe\": \"%016" PRIx64 "\"}%s", f->plant->assets[i].id,
+        text_add(text, "{\"id\": \"%s\", \"file\": \"1.asset\", \"recipe\": \"%016" PRIx64 "\"}%s", f->plant->assets[i].id,
                  plant_recipe(&f->plant->assets[i], model), i > 0 ? "," : "]}");
-    write_manifest(f, text.at);
-    text_finish(&text);
+    write_manifest(f, text->at);
 }
 
 static struct plant *load(const struct scene_fixture *f, const char *more)
 {
     struct diag diag = { 0 };
-    char text[1000];
-    snprintf(text, sizeof(text), plant_text, more);
-    char *path = temp_write_text(f->folder, "plant.yaml", text);
+    char *path = temp_write_text(f->folder, "plant.yaml", test_printf(plant_text, more));
     temp_write_text(f->folder, "tags.csv", tags_text);
     temp_write_text(f->folder, "m.glb", "glTF");
     struct plant *plant = plant_load(path, &diag);
@@ -181,12 +178,11 @@ static void assert_refused_from(struct scene_fixture *f, const char *prepared, c
     fflush(stderr);
     dup2(kept, STDERR_FILENO);
     close(kept);
-    char *text = text_read_file(path, 1 << 20, &bytes);
+    char *text = test_memory(text_read_file(path, 1 << 20, &bytes));
     assert_non_null(text);
     assert_null(scene);
     if (!strstr(text, words) || !strstr(text, hint))
         fail_msg("expected '%s' and what to do in: %s", words, text);
-    mem_free(text);
 }
 
 static void assert_refused(struct scene_fixture *f, const char *words)
@@ -279,15 +275,14 @@ CASE(what_was_not_prepared_is_refused)
 CASE(a_missing_asset_does_not_keep_the_others_away)
 {
     uint64_t model;
-    struct text text = { 0 };
+    struct text *text = test_text();
     assert_true(plant_model_hash(f->plant->assets[0].model, &model));
-    text_add(&text, "{\"format\": 2, \"assets\": [");
+    text_add(text, "{\"format\": 2, \"assets\": [");
     for (size_t i = 0; i < f->plant->asset_count; i++)
-        text_add(&text, "{\"id\": \"%s\", \"file\": \"%s\", \"recipe\": \"%016" PRIx64 "\"%s}%s", f->plant->assets[i].id,
+        text_add(text, "{\"id\": \"%s\", \"file\": \"%s\", \"recipe\": \"%016" PRIx64 "\"%s}%s", f->plant->assets[i].id,
                  i == 1 ? "0.asset" : "1.asset", i == 1 ? 0 : plant_recipe(&f->plant->assets[i], model),
                  i == 1 ? ", \"missing\": \"no node's name matches 'B'\"" : "", i + 1 < f->plant->asset_count ? "," : "]}");
-    write_manifest(f, text.at);
-    text_finish(&text);
+    write_manifest(f, text->at);
     struct scene *scene = scene_create(f->log, f->plant, f->prepared);
     assert_non_null(scene);
     assert_null(scene->assets[0].missing);

@@ -25,13 +25,12 @@ static void say(struct session_case *f, const char *text)
 /* Returns the session's next text message to the client, or NULL if it has none to send now. */
 static json_t *hear(struct session_case *f)
 {
-    struct text text = { 0 };
+    struct text *text = test_text();
     json_t *message = NULL;
     bool due = session_has_text(f->session, f->now_ns);
-    assert_int_equal(session_next_text(f->session, f->now_ns, f->now_ns, &text), due);
+    assert_int_equal(session_next_text(f->session, f->now_ns, f->now_ns, text), due);
     if (due)
-        assert_non_null(message = test_json(json_loads(text.at, 0, NULL)));
-    text_finish(&text);
+        assert_non_null(message = test_json(json_loads(text->at, 0, NULL)));
     return message;
 }
 
@@ -111,9 +110,7 @@ static uint32_t send_picture(struct session_case *f)
 
 static void ack(struct session_case *f, uint32_t seq)
 {
-    char text[64];
-    snprintf(text, sizeof(text), "{\"type\":\"ack\",\"seq\":%u}", seq);
-    say(f, text);
+    say(f, test_printf("{\"type\":\"ack\",\"seq\":%u}", seq));
 }
 
 /* Answers the request with a frame of `bytes` bytes and sends it; the client's acknowledgement arrives way_ns later. */
@@ -313,12 +310,12 @@ CASE(nothing_before_hello)
 
 CASE(welcome_tells_the_plant_and_no_addresses)
 {
-    struct text text = { 0 };
+    struct text *text = test_text();
     say(f, HELLO);
-    assert_true(session_next_text(f->session, f->now_ns, f->now_ns, &text));
-    assert_null(strstr(text.at, "10.20.30.40"));
-    assert_null(strstr(text.at, "400123"));
-    json_t *welcome = test_json(json_loads(text.at, 0, NULL)), *tag, *limits, *rgb;
+    assert_true(session_next_text(f->session, f->now_ns, f->now_ns, text));
+    assert_null(strstr(text->at, "10.20.30.40"));
+    assert_null(strstr(text->at, "400123"));
+    json_t *welcome = test_json(json_loads(text->at, 0, NULL)), *tag, *limits, *rgb;
     assert_non_null(welcome);
     assert_int_equal(json_array_size(json_object_get(welcome, "groups")), 2);
     tag = json_array_get(json_object_get(welcome, "tags"), 0);
@@ -330,7 +327,6 @@ CASE(welcome_tells_the_plant_and_no_addresses)
     rgb = json_object_get(json_array_get(json_object_get(welcome, "colormaps"), 0), "rgb");
     assert_int_equal(json_string_length(rgb), 1024);
     assert_string_equal(json_string_value(json_object_get(json_object_get(welcome, "view"), "group")), "temperature");
-    text_finish(&text);
 }
 
 CASE(first_picture_comes_at_once_then_refined_then_nothing)
@@ -419,9 +415,7 @@ CASE(newest_camera_wins_and_the_last_state_arrives)
     show(f);
     /* moves the camera 50 times but acknowledges nothing: after two frames the session must stop requesting */
     for (uint32_t seq = 1; seq <= 50; seq++) {
-        char text[128];
-        snprintf(text, sizeof(text), "{\"type\":\"camera\",\"seq\":%u,\"eye\":[%u,-9,4],\"target\":[0,0,1]}", seq, seq + 5);
-        say(f, text);
+        say(f, test_printf("{\"type\":\"camera\",\"seq\":%u,\"eye\":[%u,-9,4],\"target\":[0,0,1]}", seq, seq + 5));
         if (ask(f, &request)) {
             paint(f, &request, false);
             send_picture(f);
@@ -479,9 +473,7 @@ CASE(a_view_that_cannot_be_drawn_is_said_once)
     greet(f);
     show(f);
     for (int camera = 1; camera <= 2; camera++) {
-        char text[96];
-        snprintf(text, sizeof(text), "{\"type\":\"camera\",\"seq\":%d,\"eye\":[9,9,%d],\"target\":[0,0,1]}", camera, camera + 5);
-        say(f, text);
+        say(f, test_printf("{\"type\":\"camera\",\"seq\":%d,\"eye\":[9,9,%d],\"target\":[0,0,1]}", camera, camera + 5));
         assert_true(ask(f, &request));
         paint_nothing(f, &request);
         expect_error(f, "no_picture");
@@ -562,9 +554,7 @@ CASE(readings_come_with_the_next_camera_of_a_slow_drag)
     greet(f);
     show(f);
     for (int camera = 1; camera <= 5; camera++) {
-        char text[96];
-        snprintf(text, sizeof(text), "{\"type\":\"camera\",\"seq\":%d,\"eye\":[9,9,%d],\"target\":[0,0,1]}", camera, camera + 5);
-        say(f, text);
+        say(f, test_printf("{\"type\":\"camera\",\"seq\":%d,\"eye\":[9,9,%d],\"target\":[0,0,1]}", camera, camera + 5));
         f->context.changed_ns = f->now_ns;
         request = show(f);
         assert_true(request.urgency == URGENCY_INPUT && request.read_ns == f->now_ns);
@@ -758,9 +748,7 @@ CASE(a_slow_client_gets_less_and_everything_in_the_end)
     struct frame_request request;
     greet(f);
     for (int i = 1; i <= 40; i++) {
-        char text[96];
-        snprintf(text, sizeof(text), "{\"type\":\"camera\",\"seq\":%d,\"eye\":[9,9,%d],\"target\":[0,0,1]}", i, i + 5);
-        say(f, text);
+        say(f, test_printf("{\"type\":\"camera\",\"seq\":%d,\"eye\":[9,9,%d],\"target\":[0,0,1]}", i, i + 5));
         assert_true(ask(f, &request));
         assert_true(fabs(request.view.height_px * 16.0 / 9 - request.view.width_px) <= 1 + 16.0 / 9); /* the shape of the view */
         size_t bytes = (size_t)(200e3 * request.quality.quality / 78 * request.view.width_px / 640 * request.view.width_px / 640);
@@ -919,14 +907,13 @@ CASE(large_readings_keep_all_digits)
 
 CASE(a_viewer_opens_saved_views_and_keeps_no_baseline)
 {
-    json_t *list = json_array();
+    json_t *list = test_json(json_array());
     static const char *const views[][2] = { { "own", "power=3" }, { "now", "show=difference&baseline=now" } };
     for (size_t i = 0; i < 2; i++)
         json_array_append_new(list, json_pack("{s:s,s:s,s:s,s:s,s:i,s:[]}", "id", views[i][0], "title", "View", "view", views[i][1], "by",
                                               "kim", "time_us", 5, "before"));
     greet(f);
     assert_true(named_views_mirror(f->services.named_views, list));
-    json_decref(list);
     f->session->identity.role = ROLE_VIEWER;
     say(f, "{\"type\":\"params\",\"seq\":1,\"named\":\"own\"}");
     assert_true(f->session->view.field.power == 3);
@@ -1120,7 +1107,8 @@ CASE(a_follower_is_shown_its_leaders_view)
     request = show(f);
     assert_true(request.view.width_px == 320 && request.view.camera.eye_m[0] == 9);
     session_follow(f->session, leader, f->now_ns);
-    /* the session that this one follows ends: the last frame keeps its size, and the client is told that the leader is gone */
+    /* the session that this one follows ends: the last frame keeps its size, and the client is told that the leader is gone
+       */
     session_leader_gone(f->session, f->now_ns);
     following = hear(f);
     assert_int_equal(json_integer_value(json_object_get(following, "session")), 8);

@@ -7,7 +7,6 @@
 #include "service/history_loader.h"
 #include "session/session.h"
 #include "tests/support/session_case.h"
-#include "value/quality.h"
 
 #define HELLO "{\"type\":\"hello\",\"width\":640,\"height\":360,\"codecs\":[\"jpeg\"]%s}"
 static const int64_t NOW_US = INT64_C(1793500000000000), MS = NS_PER_MS;
@@ -46,16 +45,15 @@ static void say(struct session_case *f, const char *text)
 /* Reads all messages to the client that are due. Returns the last one of this type. */
 static json_t *hear(struct session_case *f, const char *type)
 {
-    struct text text = { 0 };
+    struct text *text = test_text();
     json_t *found = NULL;
-    while (session_next_text(f->session, f->now_ns, utc_ns(f), &text)) {
-        json_t *message = test_json(json_loads(text.at, 0, NULL));
+    while (session_next_text(f->session, f->now_ns, utc_ns(f), text)) {
+        json_t *message = test_json(json_loads(text->at, 0, NULL));
         assert_non_null(message);
         if (!strcmp(json_string_value(json_object_get(message, "type")), type))
             found = message;
-        text.length = 0;
+        text->length = 0;
     }
-    text_finish(&text);
     return found;
 }
 
@@ -73,9 +71,7 @@ static void expect_error(struct session_case *f, const char *code)
 
 static void greet(struct session_case *f, const char *more)
 {
-    char text[512];
-    snprintf(text, sizeof(text), HELLO, more);
-    say(f, text);
+    say(f, test_printf(HELLO, more));
     json_t *welcome = hear(f, "welcome");
     assert_non_null(welcome);
     snprintf(f->resume, sizeof(f->resume), "%s", json_string_value(json_object_get(welcome, "resume")));
@@ -83,9 +79,7 @@ static void greet(struct session_case *f, const char *more)
 
 static void go(struct session_case *f, int64_t ago_s, double speed)
 {
-    char text[128];
-    snprintf(text, sizeof(text), "{\"type\":\"time\",\"at_us\":%lld,\"speed\":%g}", (long long)(NOW_US - ago_s * 1000000), speed);
-    say(f, text);
+    say(f, test_printf("{\"type\":\"time\",\"at_us\":%lld,\"speed\":%g}", (long long)(NOW_US - ago_s * 1000000), speed));
 }
 
 /* Returns the instant of which the session wants a snapshot, in seconds before NOW, or NAN if it wants none. */

@@ -219,9 +219,7 @@ CASE(every_type_over_the_wire)
         { "root", 0 },       { "linear", 0 },           { "float64", 1e-3 },      { "int32", 0 },             { "float32", 1e6 },
     };
     for (size_t i = 0; i < sizeof(sets) / sizeof(sets[0]); i++) {
-        char command[60];
-        snprintf(command, sizeof(command), "set %s %.17g", sets[i].name, sets[i].value);
-        assert_string_equal(control(s, command), "ok");
+        assert_string_equal(control(s, test_printf("set %s %.17g", sets[i].name, sets[i].value)), "ok");
         expect(&reader, s->plant, sets[i].name, QUALITY_GOOD, sets[i].value);
     }
     /* other bits of the same register were set meanwhile, which must not change bit 4 */

@@ -79,7 +79,7 @@ static void release(struct subdiv *split)
 TEST(a_sample_says_what_the_level_needs)
 {
     struct level level, sample;
-    float *errors = mem_array(TRIANGLES, sizeof(*errors));
+    float *errors = test_memory(mem_array(TRIANGLES, sizeof(*errors)));
     double needed = 0;
     make_level(&level);
     for (uint32_t t = 0; t < TRIANGLES; t++) {
@@ -102,7 +102,6 @@ TEST(a_sample_says_what_the_level_needs)
     release(&part);
     level_finish(&level);
     level_finish(&sample);
-    mem_free(errors);
 }
 
 /* In the sample, a single triangle has a huge error. That says nothing about the triangles outside the sample, so the estimate
@@ -110,7 +109,7 @@ TEST(a_sample_says_what_the_level_needs)
 TEST(a_sample_is_not_sure_of_what_one_triangle_needs)
 {
     struct level level, sample;
-    float *errors = mem_array(TRIANGLES, sizeof(*errors));
+    float *errors = test_memory(mem_array(TRIANGLES, sizeof(*errors)));
     make_level(&level);
     size_t blocks = subdiv_take_sample(&sample, &level);
     struct subdiv part = { .sample_blocks = blocks, .sample_of = (double)level.index_count / sample.index_count };
@@ -124,7 +123,6 @@ TEST(a_sample_is_not_sure_of_what_one_triangle_needs)
     release(&part);
     level_finish(&level);
     level_finish(&sample);
-    mem_free(errors);
 }
 
 TEST_GROUP(surface_case_set_up, surface_case_tear_down)

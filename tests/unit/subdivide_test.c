@@ -3,6 +3,7 @@
    be vertices, and no cracks may open. The expected field is computed in doubles from exact distances. */
 #include "tests/support/test.h"
 
+#include "base/math/search.h"
 #include "base/math/vec.h"
 #include "preprocess/geometry/welded_positions.h"
 #include "preprocess/subdivision/subdivide.h"
@@ -445,17 +446,11 @@ static double error_as_seen(const struct prepared_body *body, const struct sight
     return error;
 }
 
-static int by_size(const void *a, const void *b)
-{
-    double p = *(const double *)a, q = *(const double *)b;
-    return (p > q) - (p < q);
-}
-
 static void say_errors(const struct prepared_body *body, size_t level, const char *name, const char *where, double *errors, size_t count)
 {
     if (count == 0)
         return;
-    qsort(errors, count, sizeof(*errors), by_size);
+    qsort(errors, count, sizeof(*errors), compare_doubles);
     print_message("# %s, level %zu: %u triangles, %u split; %zu places %s err by %.2f steps (95 %%), %.2f (99.5 %%), %.2f at most\n", name,
                   level, body->levels.at[level].whole_count / 3, body->levels.at[level].index_count / 3, count, where,
                   255 * errors[count * 95 / 100], 255 * errors[count * 995 / 1000], 255 * errors[count - 1]);
@@ -695,14 +690,13 @@ TEST(what_stands_out_of_a_body_shows_the_field)
     static const double points[SENSORS][3] = { { 0, 1.3, 0.2 }, { 0, -1.3, 0.5 },  { 0, 0.1, 1.1 },
                                                { 1, 0.3, 0.2 }, { -1, -0.4, 0.6 }, { 0, -0.2, -1.1 } };
     struct prepared_body body = { .as_solved = true };
-    double *errors = mem_array(POINTS, sizeof(*errors));
+    double *errors = test_memory(mem_array(POINTS, sizeof(*errors)));
     make_plate_through_box(&body);
     prepare(&body, points);
     find_errors_on_plate(&body, &body.levels.at[0], is_in_box, errors);
     say_errors(&body, 0, "plate through a box", "outside that", errors, POINTS);
     assert_true(errors[POINTS / 1000 * 995] <= 1 / 255.0);
     assert_true(errors[POINTS - 1] <= 2 / 255.0);
-    mem_free(errors);
     finish(&body);
 }
 
@@ -745,7 +739,7 @@ TEST(what_stands_out_is_true_on_coarser_levels_too)
     static const double points[SENSORS][3] = { { 0, 1.3, 0.2 }, { 0, -1.3, 0.5 }, { 0, 0.1, 1.1 },
                                                { 1, 0, 0 },     { -0.8, 0, 0.6 }, { 0, -0.2, -1.1 } };
     struct prepared_body body = { .as_solved = true };
-    double *errors = mem_array(POINTS, sizeof(*errors));
+    double *errors = test_memory(mem_array(POINTS, sizeof(*errors)));
     make_plate_through_ball(&body);
     prepare(&body, points);
     assert_true(body.levels.count > 2 && (double)body.levels.at[2].error_m < 0.05);
@@ -755,7 +749,6 @@ TEST(what_stands_out_is_true_on_coarser_levels_too)
         assert_true(errors[POINTS / 1000 * 995] <= 3 / 255.0);
         assert_true(errors[POINTS - 1] <= 20 / 255.0);
     }
-    mem_free(errors);
     finish(&body);
 }
 

@@ -88,8 +88,8 @@ static bool is_blocked(const double slot[3], const double a[3], const double b[3
 {
     double low = 0, high = 1, dx = b[0] - a[0], dy = b[1] - a[1];
     const double from[3] = { a[0] - slot[0], slot[1] - a[0], slot[2] - a[1] }, slope[3] = { dx, -dx, -dy };
-    /* narrows [low, high] to the part of the line inside the slot: where from + t slope > 0 for each of the slot's three sides
-       */
+    /* narrows [low, high] to the part of the line inside the slot: where from + t slope > 0 for each of the slot's three
+       sides */
     for (int i = 0; i < 3; i++) {
         if (slope[i] == 0 && from[i] <= 1e-6)
             return false;
@@ -166,29 +166,29 @@ static struct score score_of(const struct surface_shape *shape, const double siz
    on the shape. */
 static void test_shape(const struct surface_shape *shape)
 {
-    struct cad clean = { 0 };
+    struct cad *clean = test_cad();
     struct cad_place place;
     double size[3] = { 0 }, sources[2][3], put[2][3];
-    shape->make(&clean, size);
-    assert_true(clean.vertex_count >= 20000);
+    shape->make(clean, size);
+    assert_true(clean->vertex_count >= 20000);
     cad_random_place(&place, &chance);
-    uint32_t *vertex_of = mem_array(clean.vertex_count, sizeof(*vertex_of));
+    uint32_t *vertex_of = mem_array(clean->vertex_count, sizeof(*vertex_of));
     for (int s = 0; s < 2; s++) {
-        choose_source(&clean, s == 1, sources[s]);
+        choose_source(clean, s == 1, sources[s]);
         cad_put_point(&place, sources[s], put[s]);
     }
     for (int fault = 0; fault < CAD_FAULTS; fault++) {
         struct cad broken;
         if (!sweep_takes((int)(shape - shapes), fault, 2))
             continue;
-        cad_break(&broken, &clean, (enum cad_fault)fault, &chance, vertex_of);
+        cad_break(&broken, clean, (enum cad_fault)fault, &chance, vertex_of);
         cad_put(&broken, &place);
         struct surface *surface = surface_of(&broken);
         float *distances = mem_array(2 * broken.vertex_count, sizeof(*distances));
         assert_true(surface_distances(surface, (const double(*)[3])put, 2, distances));
         for (int s = 0; s < 2; s++) {
             struct score score =
-                score_of(shape, size, &clean, sources[s], place.scale, distances + (size_t)s * broken.vertex_count, vertex_of);
+                score_of(shape, size, clean, sources[s], place.scale, distances + (size_t)s * broken.vertex_count, vertex_of);
             print_message("# %-18s %-17s source %-9s mean %.3f %%  worst %.3f %%\n", shape->name, cad_fault_names[fault],
                           s ? "in a face" : "at vertex", 100 * score.mean, 100 * score.worst);
             assert_true(score.mean <= MEAN_MAX);
@@ -201,11 +201,9 @@ static void test_shape(const struct surface_shape *shape)
         surface_field_finish(&field);
         assert_true(surface_report(surface)->heat_disagreement > 0);
         assert_true(surface_report(surface)->heat_disagreement < METHODS_MAX);
-        surface_destroy(&surface);
         cad_finish(&broken);
         mem_free(distances);
     }
-    cad_finish(&clean);
     mem_free(vertex_of);
 }
 
@@ -229,20 +227,17 @@ static float *distances_from(struct surface *surface, const struct cad *cad, dou
    surface. */
 static bool second_plate_reached(double dx, double dz)
 {
-    struct cad plate = { 0 }, both = { 0 };
-    cad_plate(&plate, &chance, 30, 30, 1, 1, 0);
-    cad_append(&both, &plate, (double[3]){ 0, 0, 0 });
-    cad_append(&both, &plate, (double[3]){ dx, 0.01, dz });
-    struct surface *surface = surface_of(&both);
-    float *distances = distances_from(surface, &both, 0.1, 0.1, 0);
-    bool reached = isfinite(distances[plate.vertex_count]);
-    for (size_t v = 0; v < plate.vertex_count; v++) {
+    struct cad *plate = test_cad(), *both = test_cad();
+    cad_plate(plate, &chance, 30, 30, 1, 1, 0);
+    cad_append(both, plate, (double[3]){ 0, 0, 0 });
+    cad_append(both, plate, (double[3]){ dx, 0.01, dz });
+    struct surface *surface = surface_of(both);
+    float *distances = distances_from(surface, both, 0.1, 0.1, 0);
+    bool reached = isfinite(distances[plate->vertex_count]);
+    for (size_t v = 0; v < plate->vertex_count; v++) {
         assert_true(isfinite(distances[v]));
-        assert_true(isfinite(distances[plate.vertex_count + v]) == reached);
+        assert_true(isfinite(distances[plate->vertex_count + v]) == reached);
     }
-    surface_destroy(&surface);
-    cad_finish(&plate);
-    cad_finish(&both);
     mem_free(distances);
     return reached;
 }
@@ -275,36 +270,33 @@ static void assert_bridges_are_shown(const struct surface *surface, double low_x
 
 TEST(bridges_lie_in_the_gap)
 {
-    struct cad plate = { 0 }, both = { 0 };
-    cad_plate(&plate, &chance, 30, 30, 1, 1, 0);
-    cad_append(&both, &plate, (double[3]){ 0, 0, 0 });
-    cad_append(&both, &plate, (double[3]){ 1.0003, 0, 0 });
-    struct surface *surface = surface_of(&both);
+    struct cad *plate = test_cad(), *both = test_cad();
+    cad_plate(plate, &chance, 30, 30, 1, 1, 0);
+    cad_append(both, plate, (double[3]){ 0, 0, 0 });
+    cad_append(both, plate, (double[3]){ 1.0003, 0, 0 });
+    struct surface *surface = surface_of(both);
     assert_int_equal(surface_report(surface)->components, 2);
     assert_int_equal(surface_report(surface)->components_after, 1);
     assert_int_equal(surface_report(surface)->bridges, 31); /* 31 bridges: one for each pair of opposite vertices along the gap */
     assert_float_equal(surface_report(surface)->longest_bridge_m, 0.0003, 1e-6);
     assert_bridges_are_shown(surface, 0.9999, 1.0004);
-    surface_destroy(&surface);
-    cad_finish(&plate);
-    cad_finish(&both);
 }
 
 TEST(a_pipe_that_ends_inside_a_shell_is_joined_to_it)
 {
-    struct cad pipe = { 0 }, both = { 0 };
-    cad_sphere(&both, &chance, 40);
-    cad_cylinder(&pipe, &chance, 48, 60, 3, 0);
+    struct cad *pipe = test_cad(), *both = test_cad();
+    cad_sphere(both, &chance, 40);
+    cad_cylinder(pipe, &chance, 48, 60, 3, 0);
     /* makes the pipe 0.2 m in radius and moves it along its axis, so that it leads from inside the sphere to the outside */
-    for (size_t v = 0; v < pipe.vertex_count; v++) {
-        pipe.positions[v][0] *= 0.2f;
-        pipe.positions[v][1] *= 0.2f;
-        pipe.positions[v][2] += 0.5f;
+    for (size_t v = 0; v < pipe->vertex_count; v++) {
+        pipe->positions[v][0] *= 0.2f;
+        pipe->positions[v][1] *= 0.2f;
+        pipe->positions[v][2] += 0.5f;
     }
-    size_t sphere_count = both.vertex_count;
-    cad_append(&both, &pipe, (double[3]){ 0, 0, 0 });
-    struct surface *surface = surface_of(&both);
-    float *distances = distances_from(surface, &both, 0, 0, -1);
+    size_t sphere_count = both->vertex_count;
+    cad_append(both, pipe, (double[3]){ 0, 0, 0 });
+    struct surface *surface = surface_of(both);
+    float *distances = test_memory(distances_from(surface, both, 0, 0, -1));
     const struct surface_report *report = surface_report(surface);
     assert_int_equal(report->components, 2);
     assert_int_equal(report->components_after, 1);
@@ -312,53 +304,46 @@ TEST(a_pipe_that_ends_inside_a_shell_is_joined_to_it)
     assert_true(report->hidden_vertices >= 48 * 8); /* at least 8 rings of the pipe's vertices lie inside the sphere and are hidden */
     /* the true distance from the sphere's pole to the pipe's end: over the sphere to the pipe, then along the pipe */
     double seam = asin(0.2), truth = M_PI - seam + (3.5 - cos(seam));
-    assert_float_equal(distances[both.vertex_count - 1], truth, 0.01 * truth);
-    for (size_t v = sphere_count; v < both.vertex_count; v++)
+    assert_float_equal(distances[both->vertex_count - 1], truth, 0.01 * truth);
+    for (size_t v = sphere_count; v < both->vertex_count; v++)
         /* hidden vertices of the pipe need distances, too, because triangles that pass through the sphere's shell have corners
            there */
         assert_true(isfinite(distances[v]));
-    surface_destroy(&surface);
-    cad_finish(&both);
-    cad_finish(&pipe);
-    mem_free(distances);
 }
 
 TEST(nothing_leads_through_a_closed_part)
 {
-    struct cad pipes = { 0 };
-    cad_closed_pipe(&pipes, &chance, 0.5, 2, 80, 60, 12, 0, (const double[3]){ 0, 0, 0 });
-    size_t first = pipes.vertex_count;
+    struct cad *pipes = test_cad();
+    cad_closed_pipe(pipes, &chance, 0.5, 2, 80, 60, 12, 0, (const double[3]){ 0, 0, 0 });
+    size_t first = pipes->vertex_count;
     /* a thinner pipe across, whose middle is inside the first pipe */
-    cad_closed_pipe(&pipes, &chance, 0.3, 4, 60, 120, 8, M_PI / 2, (const double[3]){ 0, 0, 0 });
-    struct surface *surface = surface_of(&pipes);
+    cad_closed_pipe(pipes, &chance, 0.3, 4, 60, 120, 8, M_PI / 2, (const double[3]){ 0, 0, 0 });
+    struct surface *surface = surface_of(pipes);
     const struct surface_report *report = surface_report(surface);
-    float *distances = distances_from(surface, &pipes, 2, 0, 0); /* measures from one end of the second pipe to the other */
+    float *distances = distances_from(surface, pipes, 2, 0, 0); /* measures from one end of the second pipe to the other */
     assert_int_equal(report->components_after, 1);
     assert_true(report->hidden_vertices > 60 * 20);
     /* The way to the other end is 1.5 m along the second pipe, around half of the first pipe (at its shortest between the
        circles where the pipes meet), and 1.5 m again. */
     double least = 2 * 1.5 + 0.5 * (M_PI - 2 * asin(0.6));
     double other_end = INFINITY;
-    for (size_t v = first; v < pipes.vertex_count; v++)
-        if (pipes.positions[v][0] < -1.999f)
+    for (size_t v = first; v < pipes->vertex_count; v++)
+        if (pipes->positions[v][0] < -1.999f)
             other_end = fmin(other_end, (double)distances[v]);
     assert_true(other_end > least);
     assert_true(other_end < 5.5);
-    surface_destroy(&surface);
-    cad_finish(&pipes);
     mem_free(distances);
 }
 
 /* Adds a closed box from `low` to `high`, of 12 triangles. */
 static void add_box(struct cad *all, const double low[3], const double high[3])
 {
-    struct cad box = { 0 };
-    cad_box(&box, &chance, 1, 1, 1, 1);
-    for (size_t v = 0; v < box.vertex_count; v++)
+    struct cad *box = test_cad();
+    cad_box(box, &chance, 1, 1, 1, 1);
+    for (size_t v = 0; v < box->vertex_count; v++)
         for (int axis = 0; axis < 3; axis++)
-            box.positions[v][axis] = (float)(low[axis] + (double)box.positions[v][axis] * (high[axis] - low[axis]));
-    cad_append(all, &box, (double[3]){ 0, 0, 0 });
-    cad_finish(&box);
+            box->positions[v][axis] = (float)(low[axis] + (double)box->positions[v][axis] * (high[axis] - low[axis]));
+    cad_append(all, box, (double[3]){ 0, 0, 0 });
 }
 
 /* Two ducts end in flanges of 3.9 mm that touch each other. The tolerance for joining parts, derived from the ducts' length, is
@@ -366,24 +351,21 @@ static void add_box(struct cad *all, const double low[3], const double high[3])
    leads around the rim. */
 TEST(thin_flanges_are_not_bridged)
 {
-    struct cad ducts = { 0 };
+    struct cad *ducts = test_cad();
     const double low = 4 - 0.0039, high = 4 + 0.0039, truth = hypot(0.2, 8 + 2 * 0.1); /* unrolled: over the flanges' rim */
-    add_box(&ducts, (const double[3]){ 0, 0, 0 }, (const double[3]){ 0.4, 0.4, low });
-    add_box(&ducts, (const double[3]){ -0.1, -0.1, low }, (const double[3]){ 0.5, 0.5, 4 });
-    add_box(&ducts, (const double[3]){ -0.1, -0.1, 4 }, (const double[3]){ 0.5, 0.5, high });
-    add_box(&ducts, (const double[3]){ 0, 0, high }, (const double[3]){ 0.4, 0.4, 8 });
-    struct surface *surface = surface_of(&ducts);
+    add_box(ducts, (const double[3]){ 0, 0, 0 }, (const double[3]){ 0.4, 0.4, low });
+    add_box(ducts, (const double[3]){ -0.1, -0.1, low }, (const double[3]){ 0.5, 0.5, 4 });
+    add_box(ducts, (const double[3]){ -0.1, -0.1, 4 }, (const double[3]){ 0.5, 0.5, high });
+    add_box(ducts, (const double[3]){ 0, 0, high }, (const double[3]){ 0.4, 0.4, 8 });
+    struct surface *surface = surface_of(ducts);
     const struct surface_report *report = surface_report(surface);
-    float *distances = distances_from(surface, &ducts, 0.2, 0, 0);
+    float *distances = test_memory(distances_from(surface, ducts, 0.2, 0, 0));
     assert_true(report->tolerance_m > 0.0039);
     assert_int_equal(report->components_after, 1);
     assert_true(report->longest_bridge_m < 1e-6);
-    for (size_t v = 0; v < ducts.vertex_count; v++)
-        if (ducts.positions[v][2] > 7.9f && ducts.positions[v][1] < 0.1f)
+    for (size_t v = 0; v < ducts->vertex_count; v++)
+        if (ducts->positions[v][2] > 7.9f && ducts->positions[v][1] < 0.1f)
             assert_float_equal(distances[v], truth, 0.003 * truth);
-    surface_destroy(&surface);
-    cad_finish(&ducts);
-    mem_free(distances);
 }
 
 /* One duct ends inside a plate of 3.9 mm, at several depths; a second one stands on the plate's other side. Although the
@@ -404,7 +386,6 @@ TEST(nothing_leads_through_a_thin_plate)
         for (size_t v = 0; v < ducts.vertex_count; v++)
             if (ducts.positions[v][2] > 7.9f && ducts.positions[v][1] < 0.1f)
                 worst = fmax(worst, fabs((double)distances[v] - truth) / truth);
-        surface_destroy(&surface);
         cad_finish(&ducts);
         mem_free(distances);
     }
@@ -416,34 +397,31 @@ TEST(nothing_leads_through_a_thin_plate)
 
 TEST(a_sensor_is_dropped_onto_the_surface)
 {
-    struct cad plate = { 0 };
+    struct cad *plate = test_cad();
     struct surface_place place;
-    cad_plate(&plate, &chance, 10, 10, 1, 1, 0);
-    struct surface *surface = surface_of(&plate);
+    cad_plate(plate, &chance, 10, 10, 1, 1, 0);
+    struct surface *surface = surface_of(plate);
     surface_nearest(surface, (const double[3]){ 0.42, 0.68, 0.3 }, &place);
     assert_float_equal(place.distance_m, 0.3, 1e-6);
     assert_float_equal(place.position_m[0], 0.42, 1e-6);
     assert_float_equal(place.position_m[2], 0, 1e-6);
-    assert_float_equal(plate.positions[place.vertex][0], 0.4, 1e-6);
-    assert_float_equal(plate.positions[place.vertex][1], 0.7, 1e-6);
+    assert_float_equal(plate->positions[place.vertex][0], 0.4, 1e-6);
+    assert_float_equal(plate->positions[place.vertex][1], 0.7, 1e-6);
     surface_nearest(surface, (const double[3]){ -3, -4, 0 }, &place);
     assert_float_equal(place.distance_m, 5, 1e-6);
-    float *distances = distances_from(surface, &plate, 0.4, 0.7, 0.05);
-    for (size_t v = 0; v < plate.vertex_count; v++) {
-        double truth = hypot((double)plate.positions[v][0] - 0.4, (double)plate.positions[v][1] - 0.7);
+    float *distances = test_memory(distances_from(surface, plate, 0.4, 0.7, 0.05));
+    for (size_t v = 0; v < plate->vertex_count; v++) {
+        double truth = hypot((double)plate->positions[v][0] - 0.4, (double)plate->positions[v][1] - 0.7);
         /* expects the straight-line distance from the source, (0.4, 0.7) on the plate, at each vertex */
         assert_float_equal(distances[v], truth, 1e-4);
     }
-    surface_destroy(&surface);
-    cad_finish(&plate);
-    mem_free(distances);
 }
 
 TEST(nearest_is_the_nearest)
 {
-    struct cad torus = { 0 };
-    cad_torus(&torus, &chance, 160, 64, 0.3, 0.5);
-    struct surface *surface = surface_of(&torus);
+    struct cad *torus = test_cad();
+    cad_torus(torus, &chance, 160, 64, 0.3, 0.5);
+    struct surface *surface = surface_of(torus);
     for (int i = 0; i < 200; i++) {
         const double p[3] = { 4 * cad_random(&chance) - 2, 4 * cad_random(&chance) - 2, 2 * cad_random(&chance) - 1 };
         struct surface_place place;
@@ -453,18 +431,16 @@ TEST(nearest_is_the_nearest)
         assert_float_equal(place.distance_m, truth, 0.006);
         assert_float_equal(hypot3(p, place.position_m), place.distance_m, 1e-9);
     }
-    surface_destroy(&surface);
-    cad_finish(&torus);
 }
 
 /* Searching for the nearest point within a limit finds the same point as searching without, or none if that is farther away;
    also if the limit excludes all triangles that face the given direction, as for points inside the tube. */
 TEST(within_a_limit_is_the_same_spot_or_none)
 {
-    struct cad torus = { 0 };
+    struct cad *torus = test_cad();
     int within = 0, beyond = 0, other_side = 0;
-    cad_torus(&torus, &chance, 160, 64, 0.3, 0.5);
-    struct surface *surface = surface_of(&torus);
+    cad_torus(torus, &chance, 160, 64, 0.3, 0.5);
+    struct surface *surface = surface_of(torus);
     for (int i = 0; i < 2000; i++) {
         double p[3], normal[3];
         for (int axis = 0; axis < 3; axis++) {
@@ -489,8 +465,6 @@ TEST(within_a_limit_is_the_same_spot_or_none)
     }
     assert_true(within > 500 && beyond > 500 && other_side > 20);
     assert_false(surface_find_point_within(surface, (const double[3]){ 9, 9, 9 }, NULL, 1, &(struct surface_point){ 0 }));
-    surface_destroy(&surface);
-    cad_finish(&torus);
 }
 
 /* A pipe as CAD programs triangulate it, from long strips: distances between points in the middle of strips, far from any
@@ -498,19 +472,19 @@ TEST(within_a_limit_is_the_same_spot_or_none)
 TEST(long_thin_strips_are_exact_near_a_source_too)
 {
     enum { SOURCES = 8, PLACES = 400 };
-    struct cad pipe = { 0 };
+    struct cad *pipe = test_cad();
     double size[3] = { 12 }, sources[SOURCES][3], worst = 0, sum = 0;
-    cad_cylinder(&pipe, &chance, 96, 2, size[0], 0);
+    cad_cylinder(pipe, &chance, 96, 2, size[0], 0);
     for (int s = 0; s < SOURCES; s++)
-        choose_source(&pipe, true, sources[s]);
-    struct surface *surface = surface_of(&pipe);
+        choose_source(pipe, true, sources[s]);
+    struct surface *surface = surface_of(pipe);
     struct surface_field field;
     assert_true(surface_field_init(&field, surface, (const double(*)[3])sources, SOURCES, NULL));
     for (int i = 0; i < PLACES; i++) {
         double place[3];
         float found[SOURCES];
         struct surface_point hit;
-        choose_source(&pipe, true, place);
+        choose_source(pipe, true, place);
         if (i % 2) { /* near a source */
             const double *near = sources[i / 2 % SOURCES];
             double turn = atan2(near[1], near[0]) + 0.4 * (cad_random(&chance) - 0.5);
@@ -530,8 +504,6 @@ TEST(long_thin_strips_are_exact_near_a_source_too)
     assert_true(sum < 0.005);
     assert_true(worst < 0.03);
     surface_field_finish(&field);
-    surface_destroy(&surface);
-    cad_finish(&pipe);
 }
 
 /* Returns the largest relative error of distances over short ways, where a small error is relatively large. The plate's cells
@@ -539,14 +511,14 @@ TEST(long_thin_strips_are_exact_near_a_source_too)
 static double worst_short_way(int across, int up)
 {
     enum { SOURCES = 8, PLACES = 800 };
-    struct cad plate = { 0 };
+    struct cad *plate = test_cad();
     double sources[SOURCES][3] = { 0 }, worst = 0;
-    cad_plate(&plate, &chance, across, up, 2, 1, 0.6);
+    cad_plate(plate, &chance, across, up, 2, 1, 0.6);
     for (int s = 0; s < SOURCES; s++) {
         sources[s][0] = 2 * cad_random(&chance);
         sources[s][1] = cad_random(&chance);
     }
-    struct surface *surface = surface_of(&plate);
+    struct surface *surface = surface_of(plate);
     struct surface_field field;
     assert_true(surface_field_init(&field, surface, (const double(*)[3])sources, SOURCES, NULL));
     for (int i = 0; i < PLACES; i++) {
@@ -561,8 +533,6 @@ static double worst_short_way(int across, int up)
         }
     }
     surface_field_finish(&field);
-    surface_destroy(&surface);
-    cad_finish(&plate);
     return worst;
 }
 
@@ -600,49 +570,40 @@ TEST(short_ways_are_exact_whatever_edges_are_flipped)
 TEST(many_sources_at_once_are_as_one_by_one)
 {
     enum { SOURCES = 21 };
-    struct cad both = { 0 }, torus = { 0 }, plate = { 0 };
+    struct cad *both = test_cad(), *torus = test_cad(), *plate = test_cad();
     double sources[SOURCES][3];
-    cad_torus(&torus, &chance, 60, 24, 0.3, 0.5);
-    cad_plate(&plate, &chance, 16, 16, 1, 1, 0);
-    cad_append(&both, &torus, (double[3]){ 0, 0, 0 });
-    cad_append(&both, &plate, (double[3]){ 5, 0, 0 });
+    cad_torus(torus, &chance, 60, 24, 0.3, 0.5);
+    cad_plate(plate, &chance, 16, 16, 1, 1, 0);
+    cad_append(both, torus, (double[3]){ 0, 0, 0 });
+    cad_append(both, plate, (double[3]){ 5, 0, 0 });
     for (int s = 0; s < SOURCES; s++)
-        choose_source(&both, true, sources[s]);
-    struct surface *surface = surface_of(&both);
-    float *together = mem_array(SOURCES * both.vertex_count, sizeof(*together));
+        choose_source(both, true, sources[s]);
+    struct surface *surface = surface_of(both);
+    float *together = test_memory(mem_array(SOURCES * both->vertex_count, sizeof(*together)));
     assert_true(surface_distances(surface, (const double(*)[3])sources, SOURCES, together));
     for (size_t s = 0; s < SOURCES; s++) {
-        float *alone = distances_from(surface, &both, sources[s][0], sources[s][1], sources[s][2]);
-        assert_memory_equal(alone, together + s * both.vertex_count, both.vertex_count * sizeof(*alone));
+        float *alone = distances_from(surface, both, sources[s][0], sources[s][1], sources[s][2]);
+        assert_memory_equal(alone, together + s * both->vertex_count, both->vertex_count * sizeof(*alone));
         mem_free(alone);
     }
-    surface_destroy(&surface);
-    cad_finish(&torus);
-    cad_finish(&plate);
-    cad_finish(&both);
-    mem_free(together);
 }
 
 TEST(vertices_of_flat_triangles_take_their_neighbours_distance)
 {
-    struct cad plate = { 0 };
-    cad_plate(&plate, &chance, 10, 10, 1, 1, 0);
-    struct cad with = { 0 };
-    cad_append(&with, &plate, (double[3]){ 0, 0, 0 });
+    struct cad *plate = test_cad();
+    cad_plate(plate, &chance, 10, 10, 1, 1, 0);
+    struct cad *with = test_cad();
+    cad_append(with, plate, (double[3]){ 0, 0, 0 });
     const float lone[3] = { 0.55f, 0.5f, 0 };
-    mem_grow(&with.positions, &with.position_capacity, with.vertex_count + 1, sizeof(*with.positions));
-    memcpy(with.positions[with.vertex_count++], lone, sizeof(lone));
-    mem_grow(&with.triangles, &with.index_capacity, 3 * with.triangle_count + 3, sizeof(*with.triangles));
-    uint32_t last = (uint32_t)with.vertex_count - 1;
-    memcpy(with.triangles + 3 * with.triangle_count++, (const uint32_t[3]){ last, last, 0 }, 3 * sizeof(uint32_t));
-    struct surface *surface = surface_of(&with);
-    float *distances = distances_from(surface, &with, 0, 0.5, 0);
+    mem_grow(&with->positions, &with->position_capacity, with->vertex_count + 1, sizeof(*with->positions));
+    memcpy(with->positions[with->vertex_count++], lone, sizeof(lone));
+    mem_grow(&with->triangles, &with->index_capacity, 3 * with->triangle_count + 3, sizeof(*with->triangles));
+    uint32_t last = (uint32_t)with->vertex_count - 1;
+    memcpy(with->triangles + 3 * with->triangle_count++, (const uint32_t[3]){ last, last, 0 }, 3 * sizeof(uint32_t));
+    struct surface *surface = surface_of(with);
+    float *distances = test_memory(distances_from(surface, with, 0, 0.5, 0));
     assert_float_equal(distances[last], 0.55, 1e-3);
     assert_int_equal(surface_report(surface)->degenerate_triangles, 1);
-    surface_destroy(&surface);
-    cad_finish(&plate);
-    cad_finish(&with);
-    mem_free(distances);
 }
 
 TEST(a_surface_without_area_is_refused)

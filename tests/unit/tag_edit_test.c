@@ -10,10 +10,9 @@
 static void expect(const char *text, const struct tag_edit *edits, size_t count, const char *expected)
 {
     struct refusal why;
-    char *out = tag_edit(text, edits, count, &why);
+    char *out = test_memory(tag_edit(text, edits, count, &why));
     assert_non_null(out);
     assert_string_equal(out, expected);
-    mem_free(out);
 }
 
 TEST(test_one_row)
@@ -48,9 +47,8 @@ TEST(test_a_place_is_accepted_as_it_stands)
 {
     const struct tag_edit to = { .tag = "a", .place_only = true };
     struct refusal why;
-    char *out = tag_edit("Tag Name,Place,X,Y,Z,Node\na,Equipment ,1.50,2,,pump\nb,equipment,1,,,\n", &to, 1, &why);
+    char *out = test_memory(tag_edit("Tag Name,Place,X,Y,Z,Node\na,Equipment ,1.50,2,,pump\nb,equipment,1,,,\n", &to, 1, &why));
     assert_string_equal(out, "Tag Name,Place,X,Y,Z,Node\na,,1.50,2,,pump\nb,equipment,1,,,\n");
-    mem_free(out);
 }
 
 TEST(test_several_and_none)
@@ -147,13 +145,10 @@ TEST(test_random_lists)
         int rows = 1 + below(6), changed = below(rows);
         write_random(&text, ",;\t"[below(3)], rows);
         struct refusal why;
-        char name[16];
-        snprintf(name, sizeof(name), "tag%d", changed);
-        const struct tag_edit edit = { name, "NEW", NULL, NULL, NULL, { 1.5, 2, -0.25 }, false };
-        char *out = tag_edit(text.at, &edit, 1, &why);
+        const struct tag_edit edit = { test_printf("tag%d", changed), "NEW", NULL, NULL, NULL, { 1.5, 2, -0.25 }, false };
+        char *out = test_memory(tag_edit(text.at, &edit, 1, &why));
         assert_non_null(out);
         compare(temp_write_text(folder, "before.csv", text.at), temp_write_text(folder, "after.csv", out), changed);
-        mem_free(out);
         text_finish(&text);
     }
 }

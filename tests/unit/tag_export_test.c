@@ -222,7 +222,7 @@ TEST(test_udt_kinds)
     };
     for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
         struct tag_export list;
-        char *json = mem_strdup(cases[i].json);
+        char *json = test_memory(mem_strdup(cases[i].json));
         for (char *c = json; *c; c++)
             *c = *c == '\'' ? '"' : *c;
         if (!read_text(&list, json))
@@ -239,7 +239,6 @@ TEST(test_udt_kinds)
         if (!cases[i].remark != !list.remarks.at || (cases[i].remark && !strstr(list.remarks.at, cases[i].remark)))
             fail_msg("%s: '%s'", cases[i].kind, list.remarks.at ? list.remarks.at : "");
         tag_export_finish(&list);
-        mem_free(json);
     }
     print_message("# %zu of %zu kinds of UDT\n", sizeof(cases) / sizeof(*cases), sizeof(cases) / sizeof(*cases));
 }
@@ -537,14 +536,13 @@ TEST(test_checksum)
     assert_int_equal(zipWriteInFileInZip(zip, sheet, sizeof(sheet) - 1), ZIP_OK);
     assert_int_equal(zipCloseFileInZip(zip), ZIP_OK);
     zipClose(zip, NULL);
-    char *bytes = text_read_file(path, 10000, &length), *name = memmem(bytes, length, "TT-1", 4);
+    char *bytes = test_memory(text_read_file(path, 10000, &length)), *name = memmem(bytes, length, "TT-1", 4);
     name[3] = '7';
     FILE *file = fopen(path, "wb");
     assert_int_equal(fwrite(bytes, 1, length, file), length);
     fclose(file);
     assert_false(tag_export_read(&list, path, NULL, why, sizeof(why)));
     assert_non_null(strstr(why, "sheet1.xml is damaged: its checksum is wrong"));
-    mem_free(bytes);
 }
 
 /* An Excel workbook with a cover sheet, a hidden sheet and the list, in which the files of the package have unusual names. */
@@ -583,22 +581,19 @@ TEST(test_sheets)
 static bool read_sheets(int count, struct tag_export *list)
 {
     char *path = temp_path(folder, "sheets.xlsx");
-    struct text workbook = { 0 };
-    text_add(&workbook, "<workbook xmlns:r=\"r\"><sheets>");
+    struct text *workbook = test_text();
+    text_add(workbook, "<workbook xmlns:r=\"r\"><sheets>");
     for (int i = 1; i <= count; i++)
-        text_add(&workbook, "<sheet name=\"S%d\" r:id=\"a\"/>", i);
-    text_add(&workbook, "</sheets></workbook>");
-    struct text relations = { 0 };
-    text_add(&relations, "<Relationships><Relationship Id=\"a\" Target=\"worksheets/last.xml\"/></Relationships>");
+        text_add(workbook, "<sheet name=\"S%d\" r:id=\"a\"/>", i);
+    text_add(workbook, "</sheets></workbook>");
+    char *relations = test_printf("<Relationships><Relationship Id=\"a\" Target=\"worksheets/last.xml\"/></Relationships>");
     zipFile zip = zipOpen(path, APPEND_STATUS_CREATE);
-    add_part(zip, "xl/workbook.xml", workbook.at);
-    add_part(zip, "xl/_rels/workbook.xml.rels", relations.at);
+    add_part(zip, "xl/workbook.xml", workbook->at);
+    add_part(zip, "xl/_rels/workbook.xml.rels", relations);
     add_part(zip, "xl/worksheets/last.xml", SHEET("<row>" CELL("A1", "Tag") CELL("B1", "Unit") "</row><row>" CELL("A2", "TT-1") "</row>"));
     zipClose(zip, NULL);
     *list = (struct tag_export){ 0 };
     bool good = tag_export_read(list, path, NULL, why, sizeof(why));
-    text_finish(&workbook);
-    text_finish(&relations);
     return good;
 }
 

@@ -24,10 +24,9 @@ TEST_FIXTURE(struct tag_file_fixture, begin, NULL)
 static void expect_text(const char *folder, const char *name, const char *want)
 {
     struct refusal why;
-    char *path = temp_path(folder, name), *text = tag_file_read(path, &why);
+    char *path = temp_path(folder, name), *text = test_memory(tag_file_read(path, &why));
     assert_non_null(text);
     assert_string_equal(text, want);
-    mem_free(text);
 }
 
 static bool put(const struct tag_file_fixture *f, char *before, char *after, char **kept, struct refusal *why)

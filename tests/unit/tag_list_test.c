@@ -467,12 +467,11 @@ CASE(a_broken_plant_file_does_not_flood)
 
 CASE(long_lists_are_read)
 {
-    struct text csv = { 0 };
-    text_add(&csv, "Tag Name,Address,Data Type,Group,Asset,X,Y,Z\n");
+    struct text *csv = test_text();
+    text_add(csv, "Tag Name,Address,Data Type,Group,Asset,X,Y,Z\n");
     for (int i = 0; i < 20000; i++)
-        text_add(&csv, "TT-%05d,hr:%d,Float,temp,E-101,%d,2,3\n", i, i * 2, i % 100);
-    plant_case_load(c, yaml, csv.at);
+        text_add(csv, "TT-%05d,hr:%d,Float,temp,E-101,%d,2,3\n", i, i * 2, i % 100);
+    plant_case_load(c, yaml, csv->at);
     plant_case_assert_loaded(c, 0);
     assert_int_equal(c->plant->tag_count, 20000);
-    text_finish(&csv);
 }

@@ -43,28 +43,27 @@ static void write_file(struct tokens_fixture *f, const char *text, mode_t mode)
 
 static void write_two(struct tokens_fixture *f, mode_t mode)
 {
-    struct text text = { 0 };
-    text_add(&text, "# who may look\n\n");
-    add_line(&text, ROLE_VIEWER, "wall-1", "pc_wall", INT64_MAX);
-    add_line(&text, ROLE_ENGINEER, "eve@plant.example", "pc_eve", NOW_NS + NS_PER_S);
-    write_file(f, text.at, mode);
-    text_finish(&text);
+    struct text *text = test_text();
+    text_add(text, "# who may look\n\n");
+    add_line(text, ROLE_VIEWER, "wall-1", "pc_wall", INT64_MAX);
+    add_line(text, ROLE_ENGINEER, "eve@plant.example", "pc_eve", NOW_NS + NS_PER_S);
+    write_file(f, text->at, mode);
 }
 
 CASE(a_token_may_be_for_one_plant)
 {
     struct token_holder holder = { .role = ROLE_VIEWER, .name = "plant", .until_utc_ns = INT64_MAX, .plant = "Werk Nord 2" }, read;
     holder.unattended = true;
-    struct text text = { 0 };
+    struct text *text = test_text();
     const char *why;
     tokens_hash("pc_nord", holder.hash);
-    tokens_print_line(&text, &holder);
-    assert_int_equal(tokens_parse_line(text.at, &read, &why), 1);
+    tokens_print_line(text, &holder);
+    assert_int_equal(tokens_parse_line(text->at, &read, &why), 1);
     assert_string_equal(read.plant, "Werk Nord 2");
     assert_true(read.unattended);
     assert_string_equal(read.name, "plant");
-    add_line(&text, ROLE_VIEWER, "any", "pc_any", INT64_MAX);
-    write_file(f, text.at, 0600);
+    add_line(text, ROLE_VIEWER, "any", "pc_any", INT64_MAX);
+    write_file(f, text->at, 0600);
     struct tokens *tokens = tokens_create(f->log, f->path);
     tokens_set_plant(tokens, "Werk Nord 2");
     assert_true(tokens_find(tokens, "pc_nord", NOW_NS, &read));
@@ -72,23 +71,22 @@ CASE(a_token_may_be_for_one_plant)
     assert_false(tokens_find(tokens, "pc_nord", NOW_NS, &read));
     assert_int_equal(tokens_role(tokens, &holder, NOW_NS), ROLE_NOBODY);
     assert_true(tokens_find(tokens, "pc_any", NOW_NS, &read));
-    text.at[text.length - 1] = 0;
-    char *bad = test_printf("%s plant ", text.at);
+    text->at[text->length - 1] = 0;
+    char *bad = test_printf("%s plant ", text->at);
     assert_int_equal(tokens_parse_line(strstr(bad, "viewer any"), &read, &why), -1);
     tokens_destroy(&tokens);
-    text_finish(&text);
 }
 
 CASE(a_token_may_be_for_one_display)
 {
     struct token_holder holder = { .role = ROLE_VIEWER, .name = "tile", .until_utc_ns = INT64_MAX, .wall = "room", .display = 12 }, read;
-    struct text text = { 0 };
+    struct text *text = test_text();
     const char *why;
     tokens_hash("pc_tile", holder.hash);
     holder.unattended = true;
-    tokens_print_line(&text, &holder);
-    assert_non_null(strstr(text.at, " unattended display room:12\n"));
-    write_file(f, text.at, 0600);
+    tokens_print_line(text, &holder);
+    assert_non_null(strstr(text->at, " unattended display room:12\n"));
+    write_file(f, text->at, 0600);
     struct tokens *tokens = tokens_create(f->log, f->path);
     assert_true(tokens_find(tokens, "pc_tile", NOW_NS, &read));
     assert_string_equal(read.wall, "room");
@@ -107,7 +105,6 @@ CASE(a_token_may_be_for_one_display)
     char *line = test_printf("operator x %064d display room:1", 0);
     assert_int_equal(tokens_parse_line(line, &read, &why), -1);
     assert_non_null(strstr(why, "are allowed only for the role viewer"));
-    text_finish(&text);
 }
 
 CASE(holders_are_found_by_their_tokens)
@@ -133,11 +130,10 @@ CASE(time_runs_out)
     assert_false(tokens_parse_day("9999999-01-01", &until_ns) || tokens_parse_day("30-12-31", &until_ns));
     assert_false(tokens_parse_day("2026-02-30", &until_ns) || tokens_parse_day("tomorrow", &until_ns));
     assert_false(tokens_parse_day("2026-01-01x", &until_ns));
-    struct text text = { 0 };
-    add_line(&text, ROLE_OPERATOR, "guest", "pc_guest", NOW_NS + 24 * 3600 * NS_PER_S);
-    assert_non_null(strstr(text.at, " until 2026-01-01\n"));
-    write_file(f, text.at, 0640);
-    text_finish(&text);
+    struct text *text = test_text();
+    add_line(text, ROLE_OPERATOR, "guest", "pc_guest", NOW_NS + 24 * 3600 * NS_PER_S);
+    assert_non_null(strstr(text->at, " until 2026-01-01\n"));
+    write_file(f, text->at, 0640);
     struct tokens *tokens = tokens_create(f->log, f->path);
     assert_true(tokens_find(tokens, "pc_guest", NOW_NS, &holder));
     assert_int_equal(tokens_role(tokens, &holder, NOW_NS), ROLE_OPERATOR);
@@ -169,17 +165,16 @@ CASE(wrong_lines_let_in_nobody_and_leave_the_others)
                                        "viewer bob 0000000000000000000000000000000000000000000000000000000000000000 until",
                                        "viewer bob 0000000000000000000000000000000000000000000000000000000000000000 until never",
                                        "viewer bob 0000000000000000000000000000000000000000000000000000000000000000 until 2026-01-01 x" };
-    struct text text = { 0 };
+    struct text *text = test_text();
     struct token_holder holder;
     const char *why;
     for (size_t i = 0; i < sizeof(bad) / sizeof(bad[0]); i++) {
         assert_int_equal(tokens_parse_line(bad[i], &holder, &why), -1);
-        text_add(&text, "%s\n", bad[i]);
+        text_add(text, "%s\n", bad[i]);
     }
     assert_int_equal(tokens_parse_line("  # nothing", &holder, &why), 0);
-    add_line(&text, ROLE_OPERATOR, "good", "pc_good", INT64_MAX);
-    write_file(f, text.at, 0600);
-    text_finish(&text);
+    add_line(text, ROLE_OPERATOR, "good", "pc_good", INT64_MAX);
+    write_file(f, text->at, 0600);
     struct tokens *tokens = tokens_create(f->log, f->path);
     assert_true(tokens_find(tokens, "pc_good", NOW_NS, &holder));
     assert_false(tokens_has_name(tokens, "bob") || tokens_has_name(tokens, "b/b"));
@@ -197,14 +192,13 @@ static bool look_until_read(struct tokens *tokens)
 CASE(a_changed_file_is_read_and_revokes)
 {
     struct token_holder wall, eve;
-    struct text text = { 0 };
+    struct text *text = test_text();
     write_two(f, 0600);
     struct tokens *tokens = tokens_create(f->log, f->path);
     assert_true(tokens_find(tokens, "pc_wall", NOW_NS, &wall) && tokens_find(tokens, "pc_eve", NOW_NS, &eve));
     assert_false(tokens_look(tokens) || tokens_look(tokens));
-    add_line(&text, ROLE_OPERATOR, "eve", "pc_eve", INT64_MAX);
-    write_file(f, text.at, 0600);
-    text_finish(&text);
+    add_line(text, ROLE_OPERATOR, "eve", "pc_eve", INT64_MAX);
+    write_file(f, text->at, 0600);
     assert_true(look_until_read(tokens));
     assert_int_equal(tokens_role(tokens, &wall, NOW_NS), ROLE_NOBODY);
     assert_int_equal(tokens_role(tokens, &eve, NOW_NS), ROLE_OPERATOR);

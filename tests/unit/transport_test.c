@@ -31,7 +31,6 @@ static void carry(struct carried *c, size_t vertex)
     influence_mesh_finish(&mesh);
     mem_free(anchors);
     vertex_embedding_destroy(&embedding);
-    surface_destroy(&surface);
 }
 
 static void finish(struct carried *c)

@@ -95,7 +95,7 @@ static double truth(const struct trials_fixture *f, const float *moved_m, size_t
 CASE(test_a_moved_sensor_is_where_it_is_tried)
 {
     struct scalar *before = copy_of(f, 0, 0), *tried = copy_of(f, 0, put(f, sensor_at(f, MOVED, 0, TO, true))), *after = copy_of(f, 0, 0);
-    float *moved_m = along(f, TO);
+    float *moved_m = test_memory(along(f, TO));
     size_t changed = 0;
     for (size_t i = 0; i < VERTICES; i++) {
         assert_true(fabs((double)tried[i].value - truth(f, moved_m, i)) < 0.01);
@@ -107,26 +107,23 @@ CASE(test_a_moved_sensor_is_where_it_is_tried)
     mem_free(before);
     mem_free(tried);
     mem_free(after);
-    mem_free(moved_m);
 }
 
 CASE(test_straight_distances_stand_in)
 {
-    struct scalar *guess = copy_of(f, 0, put(f, sensor_at(f, MOVED, 0, TO, false)));
+    struct scalar *guess = test_memory(copy_of(f, 0, put(f, sensor_at(f, MOVED, 0, TO, false))));
     const float(*at)[3] = f->plant->file.view.positions_m;
-    float *straight_m = mem_array(VERTICES, sizeof(*straight_m));
+    float *straight_m = test_memory(mem_array(VERTICES, sizeof(*straight_m)));
     for (size_t i = 0; i < VERTICES; i++)
         straight_m[i] = sqrtf(powf(at[i][0] - at[TO][0], 2) + powf(at[i][1] - at[TO][1], 2) + powf(at[i][2] - at[TO][2], 2));
     for (size_t i = 0; i < VERTICES; i++)
         assert_true(fabs((double)guess[i].value - truth(f, straight_m, i)) < 0.01);
-    mem_free(guess);
-    mem_free(straight_m);
 }
 
 CASE(test_it_may_go_to_another_asset)
 {
     uint32_t id = put(f, sensor_at(f, MOVED, 1, TO, true));
-    struct scalar *left = copy_of(f, 0, id), *there = copy_of(f, 1, id), *was = copy_of(f, 0, 0);
+    struct scalar *left = test_memory(copy_of(f, 0, id)), *there = test_memory(copy_of(f, 1, id)), *was = test_memory(copy_of(f, 0, 0));
     assert_true(fabs((double)there[TO].value - f->plant->snapshot->readings[MOVED].value) < 1e-4);
     /* without the trial, the vertex where the sensor really is shows its reading */
     assert_true(fabsf(was[MOVED].value - (float)f->plant->snapshot->readings[MOVED].value) < 1e-3f);
@@ -134,9 +131,6 @@ CASE(test_it_may_go_to_another_asset)
     for (size_t i = 0; i < VERTICES; i++)
         changed += left[i].value != was[i].value;
     assert_true(changed > VERTICES / 2);
-    mem_free(left);
-    mem_free(there);
-    mem_free(was);
 }
 
 CASE(test_what_it_does_not_touch_is_shared)

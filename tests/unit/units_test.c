@@ -144,10 +144,9 @@ CASE(rows_are_in_their_own_unit)
     assert_true(t[4].alarms.limits[LIMIT_H] == 80 && t[4].deadband == 1 && !t[4].scale.change.converts);
     assert_true(!t[3].scale.change.converts && !t[5].scale.change.converts);
     assert_string_equal(t[3].unit, "°F");
-    struct history_tag *kept = history_tags(c->plant);
+    struct history_tag *kept = test_memory(history_tags(c->plant));
     assert_true(fabs(kept[1].within - 0.2 / 100 * 200) < 1e-9); /* the tag's range spans 360 °F, which is a span of 200 °C */
     assert_string_equal(kept[0].unit, "°C");
-    mem_free(kept);
     static const struct {
         int tag;
         double device, shown;
@@ -281,7 +280,7 @@ CASE(what_was_recorded_is_shown_in_the_unit_of_now)
     for (int pass = 0; pass < 2; pass++) {
         struct history_reader *reader = history_reader_create(log, folder);
         struct history_tag *tags = history_tags(c->plant);
-        struct snapshot *snapshot = snapshot_create(1);
+        struct snapshot *snapshot = test_snapshot(1);
         struct history_series points, buckets;
         /* in the second pass the reader has no plant, so it must use the unit that the month file states */
         history_reader_show_by(reader, pass ? NULL : c->plant);
@@ -292,7 +291,6 @@ CASE(what_was_recorded_is_shown_in_the_unit_of_now)
         assert_true(fabs(points.points.at[points.points.count - 2].value - (pass ? 10 : 100)) < 1e-9);
         assert_true(buckets.buckets.count > 0 && fabs(buckets.buckets.at[0].high - 100) < 1e-9);
         assert_true(fabs(snapshot->readings[0].value - 100) < 1e-9);
-        snapshot_destroy(&snapshot);
         history_series_finish(&points);
         history_series_finish(&buckets);
         history_reader_destroy(&reader);

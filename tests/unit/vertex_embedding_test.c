@@ -46,14 +46,6 @@ static void make_bent_plate(struct cad *plate, struct cad_random *random)
     }
 }
 
-static void write_model(const struct prep_case *c, const struct cad *cad)
-{
-    size_t size;
-    char *glb = maker_glb_of(cad, "plate", &size);
-    temp_write(c->folder, "model.glb", glb, size);
-    mem_free(glb);
-}
-
 static struct surface *kept_surface(const struct prep_case *c)
 {
     struct cache_file kept;
@@ -80,14 +72,14 @@ static void on_side(double turn, double y, double radius, float out[3])
 TEST(what_stands_off_is_on_the_side_that_it_looks_along)
 {
     enum { COUNT = 200 };
-    struct cad plate = { 0 };
+    struct cad *plate = test_cad();
     struct cad_random chance;
     float places[2 * COUNT][3], normals[2 * COUNT][3], found_m[2 * COUNT];
     uint32_t triangles[3 * COUNT];
     const double outer = RADIUS + CELL, source[3] = { 0, UP * CELL / 2, outer };
     double worst_m = 0, nearest_m = INFINITY;
     cad_random_start(&chance);
-    make_bent_plate(&plate, &chance);
+    make_bent_plate(plate, &chance);
     /* points 0 to COUNT - 1 lie exactly on the outer side, like vertices of the finest level; the others lie below them, nearer
        to the inner side */
     for (int i = 0; i < COUNT; i++) {
@@ -99,8 +91,8 @@ TEST(what_stands_off_is_on_the_side_that_it_looks_along)
         on_side(turn, 0, 1, normals[COUNT + i]);
         triangles[3 * i] = triangles[3 * i + 1] = triangles[3 * i + 2] = (uint32_t)i;
     }
-    struct surface *surface = surface_create(the_log, NULL, (const float(*)[3])plate.positions, plate.vertex_count, plate.triangles,
-                                             plate.triangle_count, &(struct surface_params){ 0 });
+    struct surface *surface = surface_create(the_log, NULL, (const float(*)[3])plate->positions, plate->vertex_count, plate->triangles,
+                                             plate->triangle_count, &(struct surface_params){ 0 });
     assert_non_null(surface);
     for (int told = 0; told < 2; told++) {
         struct vertex_embedding *embedding =
@@ -122,7 +114,6 @@ TEST(what_stands_off_is_on_the_side_that_it_looks_along)
     assert_true(worst_m < CELL / 4);
     assert_true(nearest_m > 0.1);
     surface_destroy(&surface);
-    cad_finish(&plate);
 }
 
 /* --- against plantcast-prep --------------------------------------------------------------------------------------------------- */
@@ -138,7 +129,7 @@ static size_t count_far(const struct asset_view *view, const struct surface *sur
     const size_t count = finest->vertex_count;
     struct vertex_embedding *embedding = vertex_embedding_create(surface, view->positions_m, normals, count, triangles, index_count / 3);
     assert_non_null(embedding);
-    char *of_finest = mem_array(count, 1);
+    char *of_finest = test_memory(mem_array(count, 1));
     float *found_m = mem_array(count, sizeof(*found_m));
     size_t far = 0, coarser = 0;
     for (size_t i = 0; i < index_count; i++)
@@ -158,7 +149,6 @@ static size_t count_far(const struct asset_view *view, const struct surface *sur
     }
     print_message("# %s normals, %zu of %zu distances of coarser levels are not those stored\n", normals ? "with" : "without", far,
                   coarser);
-    mem_free(of_finest);
     mem_free(found_m);
     vertex_embedding_destroy(&embedding);
     return far;
@@ -169,11 +159,11 @@ static size_t count_far(const struct asset_view *view, const struct surface *sur
 TEST(coarser_levels_have_the_distances_of_their_own_side)
 {
     struct prep_case *c = *state;
-    struct cad plate = { 0 };
+    struct cad *plate = test_cad();
     struct cad_random random = { 7 };
     uint64_t key;
-    make_bent_plate(&plate, &random);
-    write_model(c, &plate);
+    make_bent_plate(plate, &random);
+    maker_write_cad(c->folder, "model.glb", "plate", plate);
     prep_case_plant(c, "plant: { name: Bent plate }\n"
                        "assets: [{ id: A, model: model.glb, nodes: plate, up: z }]\n"
                        "groups: [{ id: t, unit: K, min: 0, max: 1 }]\n"
@@ -189,7 +179,6 @@ TEST(coarser_levels_have_the_distances_of_their_own_side)
     assert_true(without > 100 && with < without / 2);
     surface_destroy(&surface);
     asset_unref(&asset);
-    cad_finish(&plate);
 }
 
 TEST_GROUP(set_up, tear_down)

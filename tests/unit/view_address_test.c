@@ -10,12 +10,11 @@ static void assert_read(const char *address, const char *expected)
 {
     struct view_address read;
     struct message_error error = { 0 };
-    struct text text = { 0 };
+    struct text *text = test_text();
     assert_true(view_address_read(&read, address, &error));
     for (size_t i = 0; i < read.count; i++)
-        text_add(&text, "%s%s", i ? " | " : "", read.args[i]);
-    assert_string_equal(text.at ? text.at : "", expected);
-    text_finish(&text);
+        text_add(text, "%s%s", i ? " | " : "", read.args[i]);
+    assert_string_equal(text->at ? text->at : "", expected);
     view_address_finish(&read);
 }
 
@@ -52,13 +51,12 @@ TEST(what_a_picture_cannot_show_is_said)
 
 TEST(more_than_there_is_room_for)
 {
-    struct text text = { 0 };
+    struct text *text = test_text();
     struct view_address read;
     struct message_error error = { 0 };
     for (int i = 0; i <= VIEW_ADDRESS_ARGS; i++)
-        text_add(&text, "group=t%d&", i);
-    assert_false(view_address_read(&read, text.at, &error));
+        text_add(text, "group=t%d&", i);
+    assert_false(view_address_read(&read, text->at, &error));
     assert_int_equal(read.count, VIEW_ADDRESS_ARGS);
     view_address_finish(&read);
-    text_finish(&text);
 }

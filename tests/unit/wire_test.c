@@ -75,7 +75,7 @@ static void check_vector(const char *name, bool *valid)
 {
     size_t count, json_count;
     char *bin = test_printf("%s/%s.bin", FOLDER, name), *sidecar = test_printf("%s/%s.json", FOLDER, name);
-    char *bytes = text_read_file(bin, 1 << 20, &count), *text = text_read_file(sidecar, 1 << 20, &json_count);
+    char *bytes = test_memory(text_read_file(bin, 1 << 20, &count)), *text = test_memory(text_read_file(sidecar, 1 << 20, &json_count));
     assert_non_null(bytes);
     assert_non_null(text);
     json_t *expected = test_json(json_loads(text, JSON_REJECT_DUPLICATES, NULL));
@@ -91,8 +91,6 @@ static void check_vector(const char *name, bool *valid)
         wire_put_frame(&want, header);
         assert_memory_equal(header, bytes, reserved_is_zero(bytes) ? WIRE_FRAME_HEADER_BYTES : 108);
     }
-    mem_free(text);
-    mem_free(bytes);
 }
 
 TEST(reads_and_writes_the_vectors)
@@ -116,13 +114,12 @@ TEST(reads_and_writes_the_vectors)
 TEST(every_cut_of_a_frame_is_refused)
 {
     size_t count;
-    uint8_t *bytes = (uint8_t *)text_read_file(FOLDER "/jpeg-key.bin", 1 << 20, &count);
+    uint8_t *bytes = test_memory((uint8_t *)text_read_file(FOLDER "/jpeg-key.bin", 1 << 20, &count));
     struct wire_frame frame;
     assert_non_null(bytes);
     for (size_t n = 0; n < count; n++)
         assert_false(wire_get_frame(bytes, n, &frame));
     assert_true(wire_get_frame(bytes, count, &frame));
-    mem_free(bytes);
 }
 
 /* Random changes of a valid frame header: the parser must refuse the header, or return values within their ranges that, written
@@ -131,7 +128,7 @@ TEST(random_headers_are_refused_or_sane)
 {
     unsigned seed = (unsigned)sweep_seed(), accepted = 0;
     size_t count;
-    uint8_t *bytes = (uint8_t *)text_read_file(FOLDER "/jpeg-key.bin", 1 << 20, &count);
+    uint8_t *bytes = test_memory((uint8_t *)text_read_file(FOLDER "/jpeg-key.bin", 1 << 20, &count));
     assert_non_null(bytes);
     for (int i = 0; i < 200000; i++) {
         uint8_t changed[WIRE_FRAME_HEADER_BYTES + 1024];
@@ -148,6 +145,5 @@ TEST(random_headers_are_refused_or_sane)
         assert_true(f.payload_bytes == count - WIRE_FRAME_HEADER_BYTES);
         assert_true(f.fov_deg == 0 ? f.height_m > 0 : f.fov_deg >= 1 && f.fov_deg <= 120 && f.height_m == 0);
     }
-    mem_free(bytes);
     assert_true(accepted > 1000);
 }
