@@ -200,7 +200,8 @@ CASE(a_note_is_shown_once_it_is_on_disk)
     assert_int_equal(system(mended), 0);
     assert_int_equal(notes_end(notes, f->id, "kim", false, NOON + S), REFUSAL_NONE);
     assert_int_equal(notes_add(notes, &three, "kim", NOON + S, f->id), REFUSAL_NONE);
-    notes_close(&notes); /* closes the notes before the change is written, as a reload of the plant does: the writer must still write it */
+    /* closes the notes before the change is written, as a reload of the plant does: the writer must still write it */
+    notes_close(&notes);
     file_writer_stop(writer);
     open_again(f);
     assert_notes(notes_text(f->notes, NOON + 2 * S), "one three");

@@ -160,8 +160,7 @@ TEST(the_window_is_what_is_left_free)
     overlay_window(&stand.toy->scene, &view, &whole);
     assert_true(whole.left == -1 && whole.bottom == -1 && whole.right > 0.6 && whole.right < 0.85 && whole.top > 0.8 && whole.top < 0.9);
     struct frame *frame = test_frame(draw(0, false, false));
-    /* from x = 600 on, the window for the plant must be white: the overlay draws only the marker and its label, farther left
-       */
+    /* from x = 600 on, the window for the plant must be white: the overlay draws only the marker and its label, farther left */
     for (int y = (int)((1 - whole.top) / 2 * HEIGHT) + 1; y < HEIGHT; y++)
         for (int x = 600; x < (int)((1 + whole.right) / 2 * WIDTH); x++)
             assert_int_equal(frame->bgrx[y * frame->stride_bytes + 4 * x], 255);

@@ -15,12 +15,20 @@
 #define TEMP "  - { id: temp, unit: bar, min: 0, max: 100 }\n"
 #define TAGS "Tag Name,Address,Eng Units,H\n"
 
+static void release_plant(void *resource)
+{
+    struct plant *plant = resource;
+    plant_destroy(&plant);
+}
+
+/* Returns a plant that belongs to the test. */
 static struct plant *load(struct plant_case *c, const char *yaml, const char *tags)
 {
     plant_case_load(c, yaml, tags);
     plant_case_assert_loaded(c, 0);
     struct plant *plant = c->plant;
     c->plant = NULL;
+    owned_add(release_plant, plant);
     return plant;
 }
 
@@ -48,8 +56,6 @@ CASE(each_difference_is_said)
     assert_string_not_equal(before->files.hash, after->files.hash);
     assert_null(plant_needs_restart(before, after));
     assert_diff(c, before, before, NULL, 0);
-    plant_destroy(&before);
-    plant_destroy(&after);
 }
 
 CASE(another_start_of_an_asset_is_said)
@@ -60,8 +66,6 @@ CASE(another_start_of_an_asset_is_said)
                                "sources:\n  - { id: plc, type: modbus, host: h, byte_order: CDAB, address_base: 1 }\ntags: tags.csv\n",
                                TAGS "A,40001,bar,90\n");
     assert_diff(c, before, after, (const char *const[]){ "asset E-101 changed" }, 1);
-    plant_destroy(&before);
-    plant_destroy(&after);
 }
 
 CASE(the_same_files_have_the_same_hash)
@@ -71,9 +75,6 @@ CASE(the_same_files_have_the_same_hash)
     assert_string_equal(one->files.hash, two->files.hash);
     assert_int_equal(strlen(one->files.hash), 16);
     assert_string_not_equal(one->files.hash, moved->files.hash);
-    plant_destroy(&one);
-    plant_destroy(&two);
-    plant_destroy(&moved);
 }
 
 CASE(what_a_daemon_cannot_change_is_named)
@@ -83,24 +84,18 @@ CASE(what_a_daemon_cannot_change_is_named)
     struct plant *off = load(c, YAML(TEMP, "history: { record: no }\n"), TAGS "A,40001,bar,90\n");
     assert_non_null(plant_needs_restart(one, elsewhere));
     assert_non_null(plant_needs_restart(one, off));
-    plant_destroy(&one);
-    plant_destroy(&elsewhere);
-    plant_destroy(&off);
 }
 
 CASE(many_differences_end_in_their_number)
 {
-    struct text tags = { 0 };
-    text_add(&tags, TAGS);
+    struct text *tags = test_text();
+    text_add(tags, TAGS);
     for (int i = 0; i < 500; i++)
-        text_add(&tags, "T-%d,%d,bar,\n", i, 40001 + i);
-    struct plant *before = load(c, YAML(TEMP, ""), TAGS "T-0,40001,bar,\n"), *after = load(c, YAML(TEMP, ""), tags.at);
+        text_add(tags, "T-%d,%d,bar,\n", i, 40001 + i);
+    struct plant *before = load(c, YAML(TEMP, ""), TAGS "T-0,40001,bar,\n"), *after = load(c, YAML(TEMP, ""), tags->at);
     struct plant_diff diff = { 0 };
     plant_diff(before, after, &diff);
     assert_int_equal(diff.count, PLANT_DIFF_LINES);
     assert_string_equal(diff.lines[PLANT_DIFF_LINES - 1], "and 300 more");
     plant_diff_finish(&diff);
-    text_finish(&tags);
-    plant_destroy(&before);
-    plant_destroy(&after);
 }
