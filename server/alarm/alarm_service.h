@@ -62,7 +62,8 @@ uint64_t alarm_service_rows(struct alarm_service *service, uint64_t since, void 
 /* On a standby: adds the journal row of an alarm change, as sent by the core, to this daemon's own journal unless the journal
    has it already. Call it before alarm_service_mirror() takes the resulting states. */
 void alarm_service_mirror_row(struct alarm_service *service, const struct journal_entry *row);
-/* Ends mirroring when this daemon becomes the leader: from now on the service evaluates samples, starting with the mirrored states. */
+/* Ends the mirroring (copying) of the core's alarm states, because this daemon becomes the leader: from now on the service
+   evaluates samples, starting with the copied states. */
 void alarm_service_lead(struct alarm_service *service);
 /* Counts alarms by state. */
 void alarm_service_counts(struct alarm_service *service, struct alarm_counts *out);

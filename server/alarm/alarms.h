@@ -120,7 +120,8 @@ void alarms_restore(struct alarms *alarms, int index, const struct alarm *saved,
 /* Sets alarms, found by name and kind, to the states of another daemon, in the order of `list`. whole: all alarms that are not in `list`
    become normal. Returns false if an alarm does not exist; then nothing changed. */
 bool alarms_mirror(struct alarms *alarms, const struct alarm *list, size_t count, bool whole);
-/* Ends mirroring of another daemon's alarms. Each alarm keeps its mirrored state until its tag's next sample. */
+/* Ends the mirroring (copying) of another daemon's alarm states. Each alarm keeps the state copied last until its tag's next
+   sample. */
 void alarms_lead(struct alarms *alarms, struct instant now);
 /* After a reload: copies states and running delays from the old plant's alarms to alarms of the same name and kind. */
 void alarms_adopt(struct alarms *alarms, const struct alarms *before);

@@ -182,7 +182,7 @@ static void weigh(struct week *week)
 }
 
 /* Collects the rows (hours) of the fit and makes their columns (terms of the model) orthonormal. Adds a column for each jump
-   found: 0 before the jump, 1 after it. Returns the number of columns kept. */
+   found: 0 before the jump, 1 after it. Returns the number of columns that remain after linearly dependent ones are dropped. */
 static int reduce_with_jumps(const struct week *week, struct drift_rows *rows)
 {
     double largest = 0;

@@ -14,7 +14,7 @@
 
 struct neighbours {
     struct field_layout *layout;
-    /* prepared data of the group's sensors from the influence file; NULL: predictions come from distances */
+    /* data that plantcast-prep computed for the group's sensors (influence file); NULL: predictions come from distances */
     const struct influence_entry *entry;
     /* [to][from]: geodesic distances between sensors; INFINITY: no path, or unknown. NULL: not computed (too many sensors) */
     float *along_m;

@@ -15,7 +15,8 @@
 /* for the interpolation gp (Gaussian process): smallest fraction of the variance expected without readings that readings must
    remove for a vertex to have data */
 #define MIN_KNOWN_PART 0.1
-/* for interpolation fin: smallest fraction of a value that must come from sensors rather than ambient for a vertex to have data */
+/* for the interpolation fin, which computes a value as a mean of the sensors' readings and the ambient value (of the
+   surroundings): smallest share of the sensors in that mean with which a vertex has data */
 #define MIN_SENSOR_SHARE 0.1
 
 /* largest standard deviation that the interpolation gp (Gaussian process) shows, as a multiple of that expected without
@@ -91,8 +92,8 @@ bool weights_key_equal(const struct weights_key *a, const struct weights_key *b)
     return a->hash == b->hash && a->count == b->count && memcmp(a->bytes, b->bytes, a->count) == 0;
 }
 
-/* Returns the asset's prepared entry for this interpolation in its influence file; NULL: the interpolation is computed from
-   distances, or not prepared for these sensor positions. */
+/* Returns the entry for this interpolation in the asset's influence file, in which plantcast-prep stores weights; NULL: the
+   interpolation is computed from distances, or nothing is stored for these sensor positions. */
 static const struct influence_entry *influence_of(const struct field_layout *layout, enum interpolation interpolation)
 {
     const struct influence_entry *entry = interpolation_is_prepared(interpolation) && !layout->trial && !layout->assumed
@@ -152,8 +153,8 @@ static bool take_errors(struct weights *weights, const float *errors)
     return weights->errors;
 }
 
-/* Uses the weights of the influence file unchanged, not divided by their sum: where a vertex's weights add up to less than 1,
-   ambient has the remaining weight. */
+/* Uses the weights that plantcast-prep stored in the influence file unchanged, without division by their sum. Where a vertex's
+   weights add up to less than 1, the ambient value (of the surroundings) has the remaining weight. */
 static bool take_prepared(struct weights *weights, const struct influence_entry *entry)
 {
     const struct field_layout *layout = weights->layout;
@@ -567,7 +568,8 @@ void weights_add(struct weights *weights, size_t begin, size_t count, const stru
         for (size_t k = 0; sums->marked && k < number; k++) {
             if (terms->marked[first + k] && !weights->deviations)
                 kernel_add(sums->marked, &heavy[k], ones, 1, count, NULL);
-            /* adds absolute values: weights of the interpolation gp (Gaussian process) may be negative and would cancel */
+            /* adds the absolute weights of Uncertain sensors: weights of the interpolation gp (Gaussian process) may be
+               negative, and would otherwise cancel */
             for (size_t j = 0; terms->marked[first + k] && weights->deviations && j < count; j++)
                 sums->marked[j] += fabs((double)heavy[k][j]);
         }

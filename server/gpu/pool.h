@@ -20,7 +20,7 @@ struct pool_page {
     struct pool *pool;
     GLuint buffer, texture;
     size_t texels;
-    struct pool_slice *first; /* first slice of the page; slices are listed in order of offset */
+    struct pool_slice *first; /* first slice (an asset's range) of the page; the page's slices are listed in order of offset */
 };
 struct pool_slice {
     struct pool_page *page;
@@ -29,12 +29,14 @@ struct pool_slice {
     struct pool_slice *next;
 };
 
-/* Creates a pool. format: GL format of a texel. All slices must be released before the pool is destroyed. */
+/* Creates a pool. format: GL format of a texel. All slices (ranges of assets) must be released before the pool is destroyed. */
 struct pool *pool_create(struct log *log, const char *name, GLenum format, size_t texel_bytes, GLbitfield flags);
 void pool_destroy(struct pool **pool); /* frees the pool and its buffers and sets *pool to NULL; accepts a pointer to NULL */
-/* Announces the slices that will be taken next, so that they share one page if possible. texels: sum of their sizes. */
+/* Announces the slices (ranges of assets) that will be taken next, so that they get into the same page if possible. texels: sum
+   of their sizes. */
 void pool_expect(struct pool *pool, size_t texels, size_t slices);
-/* Takes a slice of `count` texels, with one reference. Logs and returns NULL if the GPU has no room for it. */
+/* Takes a slice (range for one asset) of `count` texels, with one reference. Logs and returns NULL if the GPU has no room for
+   it. */
 struct pool_slice *pool_take(struct pool *pool, size_t count);
 struct pool_slice *pool_ref(struct pool_slice *slice); /* NULL is fine */
 void pool_unref(struct pool_slice **slice);            /* drops a reference and sets *slice to NULL; accepts a pointer to NULL */

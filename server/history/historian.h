@@ -34,8 +34,8 @@ void historian_follow(struct historian *historian);
 /* Records samples that the leading daemon has recorded, in its order. Call it only while this daemon is a standby. Call from one
    thread only. */
 void historian_mirror(struct historian *historian, const struct sample_event *samples, size_t count);
-/* Ends mirroring, because this daemon becomes the leader: from now on it records the samples of its own store. Values between
-   the last mirrored sample and now are recorded as unknown. */
+/* Ends the recording of the leading daemon's samples (mirroring), because this daemon becomes the leader: from now on it
+   records the samples of its own store. Values between the last sample of the former leader and now are recorded as unknown. */
 void historian_lead(struct historian *historian);
 /* Call this on the leader when a standby connects. The standby may be the former leader, and may have sent its remaining points
    to PostgreSQL in the meantime; these points are then read from there. */

@@ -119,7 +119,8 @@ static const char *const sql[SQL_COUNT] = {
 static const struct database_format format = {
     APPLICATION_ID,
     HISTORY_VERSION,
-    /* small pages, because each second changes only a few bytes of the table `second` */
+    /* page_size: pages of 1024 bytes are smaller than SQLite's default, because SQLite writes whole pages, but each second
+       changes only a few bytes of the table `second` */
     "PRAGMA page_size = 1024; PRAGMA auto_vacuum = INCREMENTAL; PRAGMA cache_size = -16000; PRAGMA wal_autocheckpoint = 32000",
     schemas,
     sql,

@@ -89,7 +89,8 @@ static json_t *numbers(const char *text)
     return NULL;
 }
 
-/* Reads one sensor's strength and decay: `2`, `2:0.5` or `:0.5`. */
+/* Reads one sensor's strength (factor of its weight) and decay (how fast its weight falls with distance): `STRENGTH`,
+   `STRENGTH:DECAY` or `:DECAY`, such as `2:0.5`. */
 static json_t *sensor(const char *text)
 {
     json_t *object = json_object();
@@ -108,7 +109,8 @@ static json_t *sensor(const char *text)
     return NULL;
 }
 
-/* Reads several sensors' strengths and decays: TAG=STRENGTH[:DECAY],... */
+/* Reads the strengths (factors of the weights) and decays (how fast the weights fall with distance) of several sensors:
+   TAG=STRENGTH[:DECAY],... */
 static json_t *sensors(const char *text)
 {
     json_t *all = json_object();

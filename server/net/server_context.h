@@ -200,8 +200,8 @@ void stream_on_pick(struct server_context *server, const struct pick_answer *ans
    the rest of the struct. */
 void stream_on_signed(struct server_context *server, struct signing *signing);
 void stream_on_historical_snapshot(struct server_context *server, const struct history_loader_answer *answer);
-/* stream_on_coverage() and stream_say() pass a copy of the sensor coverage, or of a text, to the stream whose client asked for it. They do
-   nothing if the stream has gone. */
+/* stream_on_coverage() passes a copy of the sensor coverage (how well sensors cover an asset) to the stream whose client asked
+   for it; stream_say() passes a text. Both do nothing if the stream has gone. */
 void stream_on_coverage(struct server_context *server, const struct sensor_coverage_answer *answer);
 void stream_say(struct server_context *server, uint64_t client, const char *text);
 /* Tells sessions with sensors moved on trial that the geodesic distances from these sensors are computed. */

@@ -171,7 +171,8 @@ void tls_serve(struct tls *tls, SSL_CTX *context)
 {
     publish(tls);
     SSL_CTX_set_min_proto_version(context, TLS1_2_VERSION);
-    /* in TLS 1.2, CBC ciphers are turned off; TLS 1.3 needs no list, because all its ciphers are secure */
+    /* allows for TLS 1.2 only ciphers with forward secrecy and authenticated encryption, so no CBC ciphers; TLS 1.3 needs no
+       list, because all its ciphers are secure */
     SSL_CTX_set_cipher_list(context, "ECDHE+AESGCM:ECDHE+CHACHA20");
     tls->served = context;
 }

@@ -26,7 +26,7 @@ struct episode { /* an episode: the time during which an alarm needs attention; 
 
 struct queued_item {
     struct outbox_item said;
-    int episode; /* index of the alarm's episode; -1: the episode was removed */
+    int episode; /* index of the alarm's episode (time during which the alarm needs attention); -1: the episode was removed */
 };
 
 struct queue {
@@ -53,14 +53,16 @@ struct outbox {
     const struct plant *plant;
     struct episode *episodes;
     size_t count, capacity;
-    int *by_alarm;               /* by tag and alarm kind: 1 + index of the alarm's episode in `episodes`; 0: the alarm has none */
+    /* by tag and alarm kind: 1 + index in `episodes` of the alarm's episode (time during which the alarm needs attention); 0:
+       the alarm has none */
+    int *by_alarm;
     struct recipient_box *boxes; /* by recipient: its queue */
     size_t items;                /* number of queued alarms of all recipients */
     int64_t lost, made;
     bool dirty;
 };
 
-/* Returns the index of an alarm's episode in outbox->episodes, or -1. */
+/* Returns the index in outbox->episodes of an alarm's episode (time during which the alarm needs attention), or -1. */
 int outbox_find(const struct outbox *outbox, const char *name, int tag, enum alarm_kind kind);
 struct episode *outbox_add_episode(struct outbox *outbox, const char *name, int tag, enum alarm_kind kind);
 

@@ -56,7 +56,9 @@ struct placing {
     /* --- below: under lock */
     struct distance_ask *done;
     struct sensor_coverage_answer *answers, **answers_last;
-    int jobs; /* number of coverage requests that workers are still computing */
+    /* number of requests for the sensor coverage of an asset (how well sensors cover its surface) that workers are still
+       computing */
+    int jobs;
 };
 
 /* --- creating and destroying ------------------------------------------------------------------------------------------------ */

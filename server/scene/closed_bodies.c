@@ -24,7 +24,9 @@ struct bodies {
     /* place: by vertex: index of the first vertex at its position; root: by that first vertex: parent in the union-find forest of connected
        vertices */
     uint32_t *place, *root;
-    uint32_t *table; /* hash table of grid cells, to find vertices by position: 1 + index of a welded vertex in the cell; 0: free slot */
+    /* hash table of grid cells, to find vertices by position: 1 + index of a welded vertex (all vertices at nearly one position
+       count as this vertex) in the cell; 0: free slot */
+    uint32_t *table;
     float apart_m;
     size_t table_mask, edge_mask;
     struct edge_count *edges;
@@ -79,8 +81,8 @@ static uint32_t find_place(const struct bodies *bodies, const int32_t cell[3], c
     return UINT32_MAX;
 }
 
-/* Returns the vertex at a welded position in the point's own grid cell, or in an adjacent cell whose border is within the welding distance.
-   UINT32_MAX: none. */
+/* Returns the welded vertex (one that represents all vertices at nearly its position) that the point belongs to, from the
+   point's own grid cell or an adjacent cell whose border is within the welding distance. UINT32_MAX: none. */
 static uint32_t find_place_near(const struct bodies *bodies, const float at[3], int32_t own[3])
 {
     int32_t beside[3];

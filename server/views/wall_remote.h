@@ -15,7 +15,7 @@ enum { WALL_DESK_BYTES = 121, WALL_AREA_BYTES = 61, WALL_POINTERS = 8 };
 #define WALL_REMOTE_FILE "walls.json"
 
 struct wall_place {
-    /* id of the wall, and name of the area of its display that the pane covers; area "": the whole display */
+    /* wall: id of the wall; area: name of the area of the wall's display that the pane covers; "": the whole display */
     char wall[NAMED_VIEW_ID_BYTES], area[WALL_AREA_BYTES];
     int display; /* number of the display on the wall, from 1; 0: no display */
 };
@@ -25,7 +25,9 @@ struct wall_order {
     /* address (fields of the page's URL) and title of the view that the pane must show; view "": the pane shows the views that
        the plant file gives it */
     const char *view, *title;
-    bool held; /* true: the pane stops changing its views. An order with neither `view` nor `held` releases the pane */
+    /* true: the pane (area of a display) stays at its present view, even if it otherwise shows several views in turn. An order
+       with neither `view` nor `held` releases the pane */
+    bool held;
     const char *desk;
 };
 

@@ -19,7 +19,8 @@ struct gpu_scene {
     GLuint depth_programs[2][2]; /* [clip planes][alpha-masked textures] */
 };
 
-/* Uploads all models. sky: the light for computing the colour ramps of previews. On failure, logs the reason and returns false. */
+/* Uploads all models. sky: the light with which the colour ramps of materials (colours from dark to bright, for previews) are
+   computed. On failure, logs the reason and returns false. */
 bool gpu_scene_init(struct gpu_scene *gpu_scene, struct gl *gl, const struct scene *scene, const struct environment_light *sky);
 void gpu_scene_finish(struct gpu_scene *gpu_scene);
 

@@ -13,10 +13,11 @@ struct section_caps {
     struct model_draws draws;
 };
 
-/* Compiles the shader programs for section caps. On failure, logs the reason and returns false. */
+/* Compiles the shader programs that draw section caps (cut faces of closed bodies). On failure, logs the reason and returns
+   false. */
 bool section_caps_init(struct section_caps *caps, struct log *log);
 void section_caps_finish(struct section_caps *caps);
-/* Draws the caps of all section planes; does nothing if the view has none. */
+/* Draws the caps (cut faces of closed bodies) on all section planes; does nothing if the view has no section plane. */
 void section_caps_draw(struct section_caps *caps, const struct frame_context *context);
 
 #endif

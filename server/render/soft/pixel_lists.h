@@ -63,7 +63,8 @@ void pixel_lists_settle(struct pixel_lists *lists);
 /* Frees the lists. *lists may be zeroed, and can be used again afterwards. */
 void pixel_lists_finish(struct pixel_lists *lists);
 
-/* Returns whether this field weights each sensor with its strength / distance^2, which is quick to sum. */
+/* Returns whether a sensor's weight in this field is its strength (a constant factor) / distance^2; such weights are quick to
+   sum. */
 static inline bool pixel_is_inverse_square(const struct pixel_field *field)
 {
     return !field->paper && field->power == 2.0f && !(field->reach_m < INFINITY);

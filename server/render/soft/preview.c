@@ -87,8 +87,8 @@ static bool draw_ghosts(struct raster *raster, struct visibility_buffer *buffer)
     return true;
 }
 
-/* Draws a whole preview. keep: also stores a visibility buffer, if memory allows, so that the preview can be recoloured.
-   Returns false when out of memory. */
+/* Draws a whole preview. keep: also stores a visibility buffer, if memory allows, from which later previews with other readings
+   are recoloured without drawing the geometry again. Returns false when out of memory. */
 static bool draw_all(struct raster *raster, const struct isoline_points *points, struct frame *frame, bool keep)
 {
     if (keep)

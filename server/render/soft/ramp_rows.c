@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds materials with equal colour ramps by sorting the rows of the ramp tables; keeps the first of equal rows. */
+/* Finds materials with equal colour ramps (a material's colours from dark to bright) by sorting the rows of the ramp tables. Of
+   equal rows, only the first is stored. */
 #include "render/soft/ramp_rows.h"
 
 #include <stdbool.h>
@@ -70,7 +71,8 @@ size_t ramp_rows_pack(uint32_t *muted, uint32_t *own, size_t count, size_t steps
         rows.bits--;
     size_t packed = 0;
     for (size_t i = 0; i < count; i++) {
-        if (first[i] != i) { /* an earlier material has an equal colour ramp, whose row is already in the packed table */
+        /* an earlier material has an equal colour ramp (colours from dark to bright), whose row is already in the packed table */
+        if (first[i] != i) {
             row_of_material[i] = row_of_material[first[i]];
             continue;
         }

@@ -14,7 +14,8 @@ static uint32_t color_of(vec linear, int i, bool muted)
     return (uint32_t)(255 * c.z[0] + 0.5f) | (uint32_t)(255 * c.y[0] + 0.5f) << 8 | (uint32_t)(255 * c.x[0] + 0.5f) << 16 | 0xff000000;
 }
 
-/* Computes a material's colour ramp, with the colours of a surface that faces up and is seen from a typical direction. */
+/* Computes a material's colour ramp (its colours from dark to bright) for a surface that faces up and is seen from a typical
+   direction. */
 void ramp_fill(const struct environment_light *sky, const double up[3], const struct ramp_material *material, bool muted, int steps,
                uint32_t *colors)
 {

@@ -152,8 +152,8 @@ static bool find(struct refined *refined, const struct frame *frame, const struc
     return true;
 }
 
-/* Finds the pixels that section caps cover at sample `sample` of each pixel, by drawing the frame shifted by that sample's offset. Returns
-   false when out of memory. */
+/* Finds the pixels in which section caps (cut faces of closed bodies) cover the sample with index `sample`, by drawing the
+   frame shifted by that sample's offset. Returns false when out of memory. */
 static bool find_caps(struct refined *refined, const struct frame *frame, size_t sample)
 {
     struct raster *raster = &refined->raster;

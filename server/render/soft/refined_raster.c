@@ -8,7 +8,8 @@
 const float refined_samples[SAMPLES][2] = { { -0.125f, -0.375f }, { 0.375f, -0.125f }, { -0.375f, 0.125f }, { 0.125f, 0.375f } };
 static const float MAX_SAMPLE_OFFSET_PX = 0.375f;
 
-/* Draws section caps into the samples before any triangle, because caps hide everything behind them. */
+/* Draws section caps (cut faces of closed bodies) into the samples before any triangle, because caps hide everything behind
+   them. */
 static void draw_caps(const struct refined *refined, int top, int bottom, const struct soft_sample samples[SAMPLES])
 {
     size_t pitch = (size_t)refined->raster.pitch_px;

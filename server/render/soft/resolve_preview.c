@@ -126,7 +126,7 @@ SOFT_INLINE lanes_int sky_color(const struct raster *raster, const struct height
     return darkened(color, ground_at(raster, LANES_IOTA + ((float)column + 0.5f), (float)row + 0.5f));
 }
 
-/* Returns the colours of section caps and of inner sides of cut surfaces. */
+/* Returns the colours of eight pixels that show section caps (cut faces of closed bodies) or inner sides of cut surfaces. */
 SOFT_INLINE lanes_int section_color(const struct raster *raster, lanes_int marks, lanes x, float y)
 {
     const float(*m)[3] = raster->ray_from_pixel;

@@ -176,7 +176,7 @@ static void look_at_all(struct soft_tile *tile)
     tile->raster->soft->kernels->look_again(tile, &blocks);
 }
 
-/* Draws the tile's section caps before all other parts, because caps hide everything behind them. */
+/* Draws the tile's section caps (cut faces of closed bodies) before all other parts, because caps hide everything behind them. */
 static void draw_caps(struct soft_tile *tile, const struct tile_list *list)
 {
     const struct raster *raster = tile->raster;
@@ -207,8 +207,8 @@ static int columns_of(const struct raster *raster)
 
 static void draw_tile(const struct raster *raster, int number, enum soft_output output, struct tile_list *list)
 {
-    /* only some members are set: zeroing the whole struct would take long, because its arrays of corners and faces are large and mostly
-       unused */
+    /* sets only some members of `tile`: zeroing the whole struct would take long, because its arrays of corners and faces are
+       large and mostly unused */
     struct soft_tile tile;
     int left = number % columns_of(raster) * TILE_WIDTH_PX, top = number / columns_of(raster) * TILE_HEIGHT_PX;
     tile.raster = raster;

@@ -7,7 +7,8 @@
 #include "session/session_impl.h"
 
 static const int64_t STEP_NS = 100 * NS_PER_MS; /* minimum time between two steps of playback, each of which shows a later instant */
-/* minimum time between two steps of slow playback; longer, because readings change little from step to step */
+/* minimum time between two steps of playback with a speed below SLOW_SPEED. It is longer than STEP_NS, because readings then
+   change little from step to step */
 static const int64_t SLOW_STEP_NS = 500 * NS_PER_MS;
 static const double SLOW_SPEED = 10;
 

@@ -16,7 +16,9 @@ struct propagation {
     uint32_t *first;
     /* up to PROPAGATION_FAN neighbours of a point in angular order, and the triangles between consecutive neighbours */
     struct propagation_fan {
-        uint32_t to[PROPAGATION_FAN]; /* by lane: point index of the neighbour; index of the fan's own point in unused lanes */
+        /* by lane (element of a vector register): point index of the neighbour; in unused lanes, index of the point whose fan
+           this is */
+        uint32_t to[PROPAGATION_FAN];
         /* length of the edge to the neighbour in metres. Negative: the length, but the neighbour must get no distance from this
            point. INFINITY: unused lane */
         float length_m[PROPAGATION_FAN];
