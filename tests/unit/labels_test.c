@@ -150,6 +150,69 @@ TEST(many_labels_do_not_overlap)
     assert_true(shown > 3);
 }
 
+/* Returns the distance of a box from a marker's centre. */
+static double distance_of(const struct label_item *item, const struct label_box *box)
+{
+    return hypot(fmax(0, fmax(box->x - item->x, item->x - box->x - box->width)),
+                 fmax(0, fmax(box->y - item->y, item->y - box->y - box->height)));
+}
+
+/* In random pictures, labels keep 10 units from the outer edge (15.5 units from the centre) of rings of other labels. Two labels of rings
+   keep 8 units between them, and a label of rings is at most 60 units from one of them. Exempt is a call-out for all rings. */
+TEST(labels_keep_room_around_rings)
+{
+    enum { COUNT = 60, ROUNDS = 40 };
+    static struct label_item items[COUNT];
+    static struct label_place places[COUNT];
+    uint64_t seed = sweep_seed();
+    json_t *size = test_json(json_pack("[ii]", 130, 36));
+    int labels = 0;
+    for (int round = 0; round < ROUNDS; round++) {
+        double unit = 0.5 + synthetic_random_unit(&seed), spread = round % 2 ? 1 : 0.3;
+        struct label_area area = { .box = { 0, 0, 1280, 720 }, .unit = unit, .measure = measure, .arg = size };
+        int rings = 0;
+        for (int i = 0; i < COUNT; i++) {
+            bool ring = synthetic_random_unit(&seed) < 0.02 * round;
+            items[i] = (struct label_item){ .x = 640 + 1280 * spread * (synthetic_random_unit(&seed) - 0.5),
+                                            .y = 360 + 720 * spread * (synthetic_random_unit(&seed) - 0.5),
+                                            .width = 90 * unit,
+                                            .height = 20 * unit,
+                                            .depth_m = 1 + synthetic_random_unit(&seed),
+                                            .rank = ring ? LABEL_BEYOND : LABEL_PLAIN,
+                                            .ring = ring,
+                                            .held = LABEL_NONE,
+                                            .callout = LABEL_NONE,
+                                            .asset = i % 5 };
+            rings += ring;
+        }
+        labels_place(items, COUNT, &area, places);
+        for (int i = 0; i < COUNT; i++) {
+            struct label_box wide = { places[i].box.x - 8 * unit, places[i].box.y - 8 * unit, places[i].box.width + 16 * unit,
+                                      places[i].box.height + 16 * unit };
+            double nearest = distance_of(&items[i], &places[i].box);
+            int shared = 0;
+            for (int k = 0; k < COUNT && places[i].callout != LABEL_NONE; k++)
+                if (places[k].callout == places[i].callout) {
+                    nearest = fmin(nearest, distance_of(&items[k], &places[i].box));
+                    shared++;
+                }
+            assert_true(!items[i].ring || places[i].slot != LABEL_NONE);
+            if (places[i].slot == LABEL_NONE || (shared > 1 && shared == rings))
+                continue;
+            labels++;
+            assert_true(!items[i].ring || nearest <= 60 * unit);
+            for (int k = 0; k < COUNT; k++) {
+                bool other = k != i && items[k].ring && (places[i].callout == LABEL_NONE || places[k].callout != places[i].callout);
+                const struct label_box *box = &places[k].box;
+                assert_true(!other || distance_of(&items[k], &places[i].box) >= 25.5 * unit - 1e-9);
+                assert_true(!other || !items[i].ring || wide.x + wide.width <= box->x + 1e-9 || box->x + box->width <= wide.x + 1e-9 ||
+                            wide.y + wide.height <= box->y + 1e-9 || box->y + box->height <= wide.y + 1e-9);
+            }
+        }
+    }
+    assert_true(labels > COUNT);
+}
+
 /* Of thousands of markers in one place, the nearest visible ones are drawn, and no others. An empty list of markers is
    accepted. */
 TEST(draws_the_first_of_thousands)

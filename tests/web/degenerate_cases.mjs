@@ -84,6 +84,7 @@ add('labels', 'placeLabels', [rings, area, 1, [{ left: 0, top: 0, right: 40, bot
 add('labels', 'boxAt', [rings[0], 3, 1], ENDS);
 add('labels', 'leaderLine', [rings[0], { left: 60, top: 40 }, 5], ENDS);
 add('labels', 'meets', [area, area], ENDS);
+add('labels', 'grow', [area, 3], ENDS);
 add('labels', 'hasArea', [area], ENDS);
 add('pins', 'placePin', [{ x: 20, y: 30, wide: 60, high: 20 }, area, [{ left: 0, top: 0, right: 40, bottom: 20 }],
     [{ left: 10, top: 20, right: 36, bottom: 46 }]], ENDS);

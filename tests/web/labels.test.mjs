@@ -71,8 +71,25 @@ function checkLeaders(members, placed) {
             `a leader line is drawn only up to ${most}, the label is at ${far(item)}`);
 }
 
+const distance = ({ x, y }, { left, top, right, bottom }) => Math.hypot(Math.max(left - x, x - right, 0), Math.max(top - y, y - bottom, 0));
+
+// Checks that labels keep 10 units from the outer edge of the widest ring (15.5 units from its centre) of another label, and that labels
+// of rings are at most 60 units from one of them. Exempt is a call-out for all rings, the only label of rings.
+function checkRoom(items, placed, boxes) {
+    for (const { id, ring } of items) {
+        const place = placed.get(id), box = place && { left: place.left, top: place.top, right: place.left + (place.width ?? 110),
+            bottom: place.top + (place.height ?? 20) };
+        const mine = items.filter((one) => one.ring && (one.id === id || (place?.callout ?? -1) === placed.get(one.id)?.callout));
+        assert.ok(!ring || boxes.size === 1 || mine.some((one) => distance(one, box) <= 60), `${id}: a leader line is too long`);
+        for (const other of place && !(ring && boxes.size === 1) ? items.filter((one) => one.ring && one.id !== id) : []) {
+            const isShared = place.callout !== undefined && placed.get(other.id)?.callout === place.callout;
+            assert.ok(distance(other, box) >= (isShared ? 13 : 25.5) - 1e-9, `${id}: ${distance(other, box)} from ring ${other.id}`);
+        }
+    }
+}
+
 // Random pictures from the size of a phone to that of a wall, with few or many rings, and with a legend in the way.
-test('every alarm ring has a label or a call-out, within the picture and over no legend', () => {
+test('every alarm ring has a label or a call-out, within the picture, over no legend, and with room around', () => {
     for (let round = 0; round < 300; round++) {
         const [right, bottom] = [random(170, 1300), random(110, 700)], legend = { left: right - 90, right, top: 0, bottom: bottom * 0.8 };
         const near = random(0, 1) < 0.5 ? 40 : 2000, centre = [random(0, right), random(0, bottom)];
@@ -97,8 +114,9 @@ test('every alarm ring has a label or a call-out, within the picture and over no
         if (bottom * 0.2 < 60 && right - 90 < 165)
             continue; // in such small pictures there is hardly any room for a label beside the legend, so covering it is not checked
         for (const [i, a] of list.entries())
-            assert.ok([legend, ...list.slice(0, i)].every((b) => a.left >= b.right || b.left >= a.right || a.top >= b.bottom ||
-                b.top >= a.bottom));
+            assert.ok([[legend, 0], ...list.slice(0, i).map((b) => [b, 8 - 1e-9])].every(([b, apart]) => a.left - b.right >= apart ||
+                b.left - a.right >= apart || a.top - b.bottom >= apart || b.top - a.bottom >= apart));
+        checkRoom(items, placed, boxes);
     }
 });
 
@@ -154,5 +172,5 @@ test('a leader line runs from the rim of its marker to the nearest point of its 
     const [x1, y1, x2, y2] = leaderLine(item, { left: 122, top: 130 }, 5);
     assert.deepEqual([x2, y2], [122, 130]);
     assert.ok(Math.abs(Math.hypot(x1 - 100, y1 - 100) - 5) < 1e-9);
-    assert.equal(FIRST_FAR, 8);
+    assert.equal(FIRST_FAR, 12);
 });

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Places the labels of alarm rings (circles around markers of tags in alarm). Each ring gets its own label, or several rings that are close
 // together share one, a call-out (protocol/LABELS.md).
-import { boxAt, CLEARANCE, hasArea, meets, SLOTS } from './labels.js';
+import { boxAt, CLEARANCE, grow, hasArea, meets, SLOTS } from './labels.js';
 
 // Distances in CSS pixels (larger on a wall). Alarm rings closer than CLOSE get one label together. Rings that already share a label keep
 // it up to the distance STILL_CLOSE, so that labels do not flicker.
@@ -9,12 +9,13 @@ const CLOSE = 26, STILL_CLOSE = 34;
 // MOST_GROUPS: maximum number of labels. While there are more, CLOSE and STILL_CLOSE are multiplied by FARTHER, so that more
 // alarm rings share a label.
 const MOST_GROUPS = 24, FARTHER = 1.25; // more rings than MOST_GROUPS count as a flood of alarms
+const APART = 8; // least distance between two labels of rings, in CSS pixels (larger on a wall)
 const MOST_LEADS = 4; // maximum number of leader lines of a call-out; if more rings are within FARTHEST, only the nearest has one
 // grid of candidate positions for a label around the centre of its alarm rings: steps in CSS pixels (larger on a wall); STEPS:
 // number of steps to each side
 const STEP_X = 24, STEP_Y = 15, STEPS = 60;
-// maximum distance, in CSS pixels (larger on a wall), of a label from the bounding box of its alarm rings, unless no other
-// label remains; also the maximum length of a leader line, from a label to the centre of a ring
+// maximum distance, in CSS pixels (larger on a wall), of a label from the centre of its nearest alarm ring, unless no other label
+// remains; also the maximum length of a leader line, from a label to the centre of a ring
 const FARTHEST = 60;
 // maximum number of times that CLOSE is multiplied by FARTHER; the result exceeds any picture
 const MOST_GROWTHS = 100;
@@ -72,7 +73,7 @@ function group(members, measure) {
     const before = members.find(({ callout }) => (callout === undefined) === alone);
     return {
         members, x: (left + right) / 2, y: (top + bottom) / 2, across: (right - left) / 2, down: (bottom - top) / 2, width, height,
-        ring: true, held: before?.held ?? -1, owner: alone ? one.id : null,
+        ring: true, held: before?.held ?? -1, owner: alone ? one.id : null, ids: new Set(members.map(({ id }) => id)),
     };
 }
 
@@ -83,6 +84,10 @@ function boxOf(one, slot, unit) {
     const left = one.x + dx * unit - one.width / 2, top = one.y + dy * unit - one.height / 2;
     return { left, top, right: left + one.width, bottom: top + one.height };
 }
+
+// Returns the distance of a label's box from a point, or from a box around the point. across, down: half that box's width and height.
+const awayFrom = ({ x, y }, { left, top, right, bottom }, across = 0, down = 0) =>
+    Math.hypot(Math.max(0, Math.max(left - x, x - right) - across), Math.max(0, Math.max(top - y, y - bottom) - down));
 
 const hasFiniteBox = ({ x, y, across, down, width, height }) => [x, y, across, down, width, height].every(Number.isFinite);
 const placeable = (items, area, unit) => (hasArea(area) && unit > 0 && unit < Infinity
@@ -124,28 +129,27 @@ export function placeRings(all, { area, unit, taken, measure, most = MOST_GROUPS
     // Chooses which members of a call-out have a leader line: those near its box, or only the nearest if none or too many are near. More or
     // longer lines would hide the plant.
     function withLeads(one) {
-        const { members, box } = one, far = members.map(({ x, y }) =>
-            Math.hypot(Math.max(box.left - x, x - box.right, 0), Math.max(box.top - y, y - box.bottom, 0)));
+        const { members, box } = one, far = members.map((item) => awayFrom(item, box));
         const nearest = Math.min(...far), near = far.filter((distance) => distance <= FARTHEST * unit).length;
         const most = near > MOST_LEADS ? nearest : Math.max(FARTHEST * unit, nearest);
         return members.length > 1 ? { ...one, leads: new Set(members.filter((_, i) => far[i] <= most)) } : one;
     }
 
-    // Returns whether a label's box is near the rings of a group.
-    function isNear({ x, y, across, down }, { left, top, right, bottom }) {
-        const aside = Math.max(0, Math.max(left - x, x - right) - across), away = Math.max(0, Math.max(top - y, y - bottom) - down);
-        return Math.hypot(aside, away) <= FARTHEST * unit;
+    // Returns whether a label's box is near a ring of a group.
+    function isNear({ x, y, across, down, members }, box) {
+        const isNearRings = awayFrom({ x, y }, box, across, down) <= FARTHEST * unit; // a fast check that most boxes fail
+        return isNearRings && members.some((item) => awayFrom(item, box) <= FARTHEST * unit);
     }
 
     // Returns the index in OFFSETS of a free position for a label. null: none is free nearby; Infinity: none is free, and there is no other
     // label to merge with.
     function find(one, out, alone) {
+        const isApart = (box) => !out.some((other) => meets(box, other.box));
         const free = (slot, more, over) => {
             const box = boxOf(one, slot, unit), owner = slot < SLOTS.length ? one.owner : null;
-            const grown = { left: box.left - more, right: box.right + more, top: box.top - more, bottom: box.bottom + more };
             const inside = box.left >= area.left && box.top >= area.top && box.right <= area.right && box.bottom <= area.bottom;
-            return inside && (alone || isNear(one, box)) && !taken.meets(grown, owner, over) &&
-                !out.some((other) => meets(grown, other.box));
+            return inside && (alone || isNear(one, box)) && !taken.meets(grow(box, more), owner, over, one.ids) &&
+                isApart(grow(box, more + APART * unit));
         };
         const isKnown = one.held >= 0 && one.held < SLOTS.length + OFFSETS.length;
         if (isKnown && isNear(one, boxOf(one, one.held, unit)) && free(one.held, 0, 1))

@@ -4,28 +4,36 @@
 // SPACINGS: minimum distances between labels, as fractions of the area's width, tried in this order; HELD: factor on spacing
 // and depth for labels of the previous picture, which makes them tend to stay
 const SPACINGS = [0.16, 0.08, 0], HELD = 0.8;
-const MARK = 5, RING = 13, NEAR_GAP = 8, FAR_GAP = 22; // units
+const MARK = 5, RING = 13, NEAR_GAP = 8, DIAGONAL_GAP = 6, FAR_GAP = 22; // units
+// distance in units of labels from the centres of alarm rings that are not their own: 10 from the outer edge of the widest ring
+const OTHER_RING = 25.5;
 export const CLEARANCE = 3;
 const ROOM = 0.06;                            // fraction of the picture's area that labels may fill
 const MOST_CELLS = 1000;                      // maximum number of cells per side of the grid that finds occupied boxes
-export const FIRST_FAR = 8;                   // slots (positions next to the marker) from this index on are far and need a leader line
+// slots (positions next to the marker) from FIRST_DIAGONAL on are diagonal, those from FIRST_FAR on are far and need a leader line
+const FIRST_DIAGONAL = 8;
+export const FIRST_FAR = 12;
 export const RANK_RING = 3;
 export const MOST_BAD = 12;
 
 export const SLOTS = [ // side, upper edge in heights
     [1, -0.5], [-1, -0.5], [1, -1.3], [1, 0.3], [-1, -1.3], [-1, 0.3], [0, -1.9], [0, 0.9],
+    [1, -1], [-1, -1], [1, 0], [-1, 0],
     [1, -2], [-1, -2], [1, 1], [-1, 1], [1, -3.2], [-1, -3.2], [1, 2.2], [-1, 2.2],
 ];
 
 // Returns true if an area is finite and larger than 0x0; otherwise no labels are placed.
 export const hasArea = ({ left, top, right, bottom }) => right > left && bottom > top && right - left < Infinity && bottom - top < Infinity;
 
+export const grow = ({ left, right, top, bottom }, by) => ({ left: left - by, right: right + by, top: top - by, bottom: bottom + by });
+
 export const meets = (a, b) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
 
 // A grid of the occupied boxes, so that a new label is compared only with boxes near it, not with thousands.
 class Taken {
-    constructor(cell, area) {
-        Object.assign(this, { area, cell: Math.max(cell, (area.right - area.left) / MOST_CELLS, (area.bottom - area.top) / MOST_CELLS) });
+    constructor(unit, area) {
+        const size = Math.max(area.right - area.left, area.bottom - area.top);
+        Object.assign(this, { area, unit, cell: Math.max(96 * unit, size / MOST_CELLS) });
         this.cells = new Map();
     }
 
@@ -46,11 +54,17 @@ class Taken {
             this.cells.set(key, [...(this.cells.get(key) ?? []), box]);
     }
 
-    // Returns true if the box meets an occupied one. over: markers to ignore: 1: those without an alarm ring; 2: all. owner:
-    // item whose own marker is ignored.
-    meets(box, owner, over = 0) {
+    // Returns true if the box meets an occupied one, or comes too close to an alarm ring. over: markers to ignore: 1: those without
+    // an alarm ring; 2: all. owner: item whose own marker is ignored. own: ids of the items whose rings the box may approach.
+    meets(box, owner, over = 0, own = null) {
         return this.keys(box).some((key) => (this.cells.get(key) ?? []).some((other) =>
-            other.owner !== owner && !(other.mark <= over) && meets(box, other)));
+            other.owner !== owner && !(other.mark <= over) && meets(box, other) && (other.mark !== 2 || this.meetsRing(box, other, own))));
+    }
+
+    // Returns true if the box comes closer to an alarm ring than a label may.
+    meetsRing({ left, top, right, bottom }, { x, y, owner }, own) {
+        const least = (own?.has(owner) ? RING : OTHER_RING) * this.unit;
+        return Math.max(0, left - x, x - right) ** 2 + Math.max(0, top - y, y - bottom) ** 2 < least ** 2;
     }
 }
 
@@ -58,10 +72,12 @@ class Taken {
 // a group of markers around its centre; 0 for a single marker.
 export function boxAt({ x, y, width, height, ring, across = 0, down = 0 }, slot, unit) {
     const [side, edge] = SLOTS[slot];
-    const gap = (slot < FIRST_FAR ? NEAR_GAP : FAR_GAP) * unit;
+    const isDiagonal = slot >= FIRST_DIAGONAL && slot < FIRST_FAR;
+    const gap = (isDiagonal ? DIAGONAL_GAP : slot < FIRST_FAR ? NEAR_GAP : FAR_GAP) * unit;
     const more = ring ? (RING - MARK) * unit : 0;
     const left = side > 0 ? x + across + gap + more : side < 0 ? x - across - gap - more - width : x - width / 2;
-    const top = y + edge * height + (side === 0 ? Math.sign(edge + 0.5) * (more + down) : 0);
+    const rise = Math.sign(edge + 0.5) * (more + down + (isDiagonal ? gap : 0));
+    const top = y + edge * height + (side === 0 || isDiagonal ? rise : 0);
     return { left, top, right: left + width, bottom: top + height };
 }
 
@@ -78,14 +94,14 @@ export function placeLabels(all, { area, unit = 1, blocked = [], rings = null, m
         return new Map();
     const items = all.filter(({ x, y, width, height, depth }) => [x, y, width, height, depth].every(Number.isFinite));
     const wide = area.right - area.left, room = ROOM * wide * (area.bottom - area.top);
-    const taken = new Taken(96 * unit, area), placed = new Map(), centres = [];
+    const taken = new Taken(unit, area), placed = new Map(), centres = [];
     const clearance = CLEARANCE * unit;
     let used = 0;
     for (const box of blocked)
         taken.add(box);
     for (const { id, x, y, ring } of items) {
-        const radius = (ring ? RING : MARK) * unit;
-        taken.add({ left: x - radius, right: x + radius, top: y - radius, bottom: y + radius, owner: id, mark: ring ? 2 : 1 });
+        const radius = (ring ? OTHER_RING : MARK) * unit;
+        taken.add({ left: x - radius, right: x + radius, top: y - radius, bottom: y + radius, x, y, owner: id, mark: ring ? 2 : 1 });
     }
     const isHeld = (item) => item.held !== undefined && item.held !== null && item.held >= 0;
     const far = (item) => item.depth * (isHeld(item) ? HELD : 1);
@@ -94,9 +110,8 @@ export function placeLabels(all, { area, unit = 1, blocked = [], rings = null, m
 
     const fits = (item, slot) => {
         const box = boxAt(item, slot, unit), more = isHeld(item) && slot === item.held ? 0 : clearance;
-        const grown = { left: box.left - more, right: box.right + more, top: box.top - more, bottom: box.bottom + more };
         const inside = box.left >= area.left && box.top >= area.top && box.right <= area.right && box.bottom <= area.bottom;
-        return inside && !taken.meets(grown, item.id) ? box : null;
+        return inside && !taken.meets(grow(box, more), item.id) ? box : null;
     };
     const place = (item) => {
         // tries the slot of the previous picture first, unless that was the slot of a call-out

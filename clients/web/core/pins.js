@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Places the pins of shift notes next to their points, where they cover neither legends nor alarm rings nor other pins.
-import { meets } from './labels.js';
+import { grow, meets } from './labels.js';
 
 // length of a pin's stem in CSS pixels (larger on a video wall) at the pin's usual position, above and to the right of its
 // point
@@ -10,8 +10,6 @@ const ROWS = 40; // number of heights to try for a pin that must cover alarm rin
 // largest distance in CSS pixels (larger on a video wall) that a pin moves from its usual position to leave a marker without an
 // alarm uncovered; rather than move farther, it covers the marker
 const FAR = 150;
-
-const enlarge = ({ left, right, top, bottom }, by) => ({ left: left - by, right: right + by, top: top - by, bottom: bottom + by });
 
 // Moves a box up or down (step -1 or 1) until it meets none of the other boxes. Returns null if it would leave the area.
 function slide(box, boxes, step, { top, bottom }) {
@@ -40,7 +38,7 @@ export function placePin({ x, y, wide, high }, area, fixed, rings, marks = []) {
     const least = (boxes, cost) => boxes.map((box) => [cost(box), box]).reduce((best, one) => (one[0] < best[0] ? one : best))[1];
     // rings that surround the pin's own point, enlarged by the stem's length: the pin avoids them, so that its stem stays
     // visible
-    const room = rings.filter((ring) => meets(ring, { left: x, right: x, top: y, bottom: y })).map((ring) => enlarge(ring, STEM));
+    const room = rings.filter((ring) => meets(ring, { left: x, right: x, top: y, bottom: y })).map((ring) => grow(ring, STEM));
     const avoided = [...marks, ...room];
     const slid = (boxes) => lefts.flatMap((at) => [-1, 1].map((step) => slide(boxAt(at), boxes, step, area))).filter(Boolean);
     const free = slid([...fixed, ...rings, ...avoided]).filter((box) => far(box) <= FAR);

@@ -1,9 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Records in a grid which areas of a frame labels, markers and blocked boxes occupy, so that label placement can query free space fast. */
-#include "base/mem.h"
 #include "render/overlay/labels_impl.h"
 
-static const double MARK_UNITS = 5, RING_UNITS = 13, NEAR_GAP = 8, FAR_GAP = 22, CELL_UNITS = 96;
+#include <math.h>
+
+#include "base/mem.h"
+
+static const double MARK_UNITS = 5, RING_UNITS = 13, NEAR_GAP = 8, DIAGONAL_GAP = 6, FAR_GAP = 22, CELL_UNITS = 96;
+/* distance of labels from the centres of alarm rings that are not their own: 10 units from the outer edge of the widest ring */
+static const double OTHER_RING_UNITS = 25.5;
 
 static int clamp(double value, int count)
 {
@@ -33,17 +38,32 @@ static void take(struct label_layout *layout, const struct label_box *box, int o
         }
 }
 
-bool layout_is_free(const struct label_layout *layout, const struct label_box *box, int owner, enum label_over over)
+struct label_box layout_grow(const struct label_box *box, double more)
+{
+    return (struct label_box){ box->x - more, box->y - more, box->width + 2 * more, box->height + 2 * more };
+}
+
+/* Returns whether a box comes too close to an item's alarm ring. group: group of rings to which the box belongs. */
+static bool meets_ring(const struct label_layout *layout, const struct label_box *box, int item, int group)
+{
+    bool own = group != LABEL_NONE && layout->group_of[item] == group;
+    double x = layout->items[item].x, y = layout->items[item].y, least = (own ? RING_UNITS : OTHER_RING_UNITS) * layout->area->unit;
+    double aside = fmax(0, fmax(box->x - x, x - box->x - box->width)), away = fmax(0, fmax(box->y - y, y - box->y - box->height));
+    return aside * aside + away * away < least * least;
+}
+
+bool layout_is_free(const struct label_layout *layout, const struct label_box *box, int owner, int group, enum label_over over)
 {
     int range[4];
     cells_of(layout, box, range);
     for (int column = range[0]; column <= range[1]; column++)
         for (int row = range[2]; row <= range[3]; row++)
             for (int i = layout->heads[row * layout->columns + column]; i >= 0; i = layout->entries[i].next) {
-                const struct label_box *other = &layout->entries[i].box;
-                bool counts = layout->entries[i].owner != owner && layout->entries[i].kind > over;
+                const struct cell_entry *entry = &layout->entries[i];
+                const struct label_box *other = &entry->box;
+                bool counts = entry->owner != owner && entry->kind > over;
                 if (counts && box->x < other->x + other->width && other->x < box->x + box->width && box->y < other->y + other->height &&
-                    other->y < box->y + box->height)
+                    other->y < box->y + box->height && (entry->kind != OVER_RINGS || meets_ring(layout, box, entry->owner, group)))
                     return false;
             }
     return true;
@@ -51,15 +71,24 @@ bool layout_is_free(const struct label_layout *layout, const struct label_box *b
 
 struct label_box layout_box(const struct label_item *item, int slot, double unit, double across, double down)
 {
-    static const double places[LABEL_SLOTS][2] = { { 1, -0.5 }, { -1, -0.5 }, { 1, -1.3 }, { 1, 0.3 }, { -1, -1.3 }, { -1, 0.3 },
-                                                   { 0, -1.9 }, { 0, 0.9 },   { 1, -2 },   { -1, -2 }, { 1, 1 },     { -1, 1 },
-                                                   { 1, -3.2 }, { -1, -3.2 }, { 1, 2.2 },  { -1, 2.2 } };
-    double side = places[slot][0], gap = (slot < LABEL_FIRST_FAR ? NEAR_GAP : FAR_GAP) * unit;
+    static const double places[LABEL_SLOTS][2] = { { 1, -0.5 }, { -1, -0.5 }, { 1, -1.3 },  { 1, 0.3 }, { -1, -1.3 },
+                                                   { -1, 0.3 }, { 0, -1.9 },  { 0, 0.9 },   { 1, -1 },  { -1, -1 },
+                                                   { 1, 0 },    { -1, 0 },    { 1, -2 },    { -1, -2 }, { 1, 1 },
+                                                   { -1, 1 },   { 1, -3.2 },  { -1, -3.2 }, { 1, 2.2 }, { -1, 2.2 } };
+    bool diagonal = slot >= LABEL_FIRST_DIAGONAL && slot < LABEL_FIRST_FAR;
+    double side = places[slot][0], gap = (diagonal ? DIAGONAL_GAP : slot < LABEL_FIRST_FAR ? NEAR_GAP : FAR_GAP) * unit;
     double above = places[slot][1] < -0.5 ? -1 : places[slot][1] > -0.5 ? 1 : 0, more = item->ring ? (RING_UNITS - MARK_UNITS) * unit : 0;
     double beside = across + gap + more;
     double x = side > 0 ? item->x + beside : side < 0 ? item->x - beside - item->width : item->x - item->width / 2;
-    double y = item->y + places[slot][1] * item->height + (side == 0 ? above * (more + down) : 0);
+    double rise = above * (more + down + (diagonal ? gap : 0));
+    double y = item->y + places[slot][1] * item->height + (side == 0 || diagonal ? rise : 0);
     return (struct label_box){ x, y, item->width, item->height };
+}
+
+double layout_distance(const struct label_item *item, const struct label_box *box, double across, double down)
+{
+    return hypot(fmax(0, fmax(box->x - item->x, item->x - box->x - box->width) - across),
+                 fmax(0, fmax(box->y - item->y, item->y - box->y - box->height) - down));
 }
 
 bool layout_is_inside(const struct label_layout *layout, const struct label_box *box)
@@ -87,15 +116,17 @@ void layout_init(struct label_layout *layout, const struct label_item *items, si
     layout->columns = (int)(area->box.width / cell) + 1;
     layout->rows = (int)(area->box.height / cell) + 1;
     layout->heads = mem_array((size_t)layout->columns * (size_t)layout->rows, sizeof(*layout->heads));
+    layout->group_of = mem_array(count, sizeof(*layout->group_of));
     layout->labelled = mem_array(count, sizeof(*layout->labelled));
     for (int i = 0; i < layout->columns * layout->rows; i++)
         layout->heads[i] = -1;
     for (size_t i = 0; i < area->blocked_count; i++)
         take(layout, &area->blocked[i], -1, OVER_ALL);
     for (size_t i = 0; i < count; i++) {
-        double radius = (items[i].ring ? RING_UNITS : MARK_UNITS) * area->unit;
+        double radius = (items[i].ring ? OTHER_RING_UNITS : MARK_UNITS) * area->unit;
         struct label_box mark = { items[i].x - radius, items[i].y - radius, 2 * radius, 2 * radius };
         take(layout, &mark, (int)i, items[i].ring ? OVER_RINGS : OVER_MARKS);
+        layout->group_of[i] = LABEL_NONE;
         places[i] = (struct label_place){ .slot = LABEL_NONE, .callout = LABEL_NONE };
     }
 }

@@ -45,8 +45,8 @@ static bool fits(const struct label_layout *layout, int index, int slot)
     const struct label_item *item = &layout->items[index];
     struct label_box box = box_of(item, slot, layout->area->unit);
     double more = slot == item->held ? 0 : LABEL_CLEARANCE * layout->area->unit;
-    struct label_box grown = { box.x - more, box.y - more, box.width + 2 * more, box.height + 2 * more };
-    return layout_is_inside(layout, &box) && layout_is_free(layout, &grown, index, OVER_NOTHING);
+    struct label_box grown = layout_grow(&box, more);
+    return layout_is_inside(layout, &box) && layout_is_free(layout, &grown, index, LABEL_NONE, OVER_NOTHING);
 }
 
 static void place(struct label_layout *layout, int index)
@@ -107,15 +107,9 @@ void labels_place(const struct label_item *items, size_t count, const struct lab
     }
     mem_free(layout.heads);
     mem_free(layout.entries);
+    mem_free(layout.group_of);
     mem_free(layout.labelled);
     mem_free(order);
-}
-
-/* Returns the distance in pixels from the centre of a sensor's marker to the nearest point of a label's box. */
-static double label_distance(const struct label_item *item, const struct label_box *box)
-{
-    return hypot(fmax(fmax(box->x - item->x, item->x - box->x - box->width), 0),
-                 fmax(fmax(box->y - item->y, item->y - box->y - box->height), 0));
 }
 
 bool labels_has_leader(const struct label_item *items, const struct label_place *places, size_t count, double unit, size_t i)
@@ -126,9 +120,9 @@ bool labels_has_leader(const struct label_item *items, const struct label_place 
         return places[i].slot >= LABEL_FIRST_FAR;
     for (size_t k = 0; k < count; k++)
         if (places[k].callout == places[i].callout) {
-            double distance = label_distance(&items[k], &places[k].box);
+            double distance = layout_distance(&items[k], &places[k].box, 0, 0);
             nearest = fmin(nearest, distance);
             near += distance <= farthest;
         }
-    return label_distance(&items[i], &places[i].box) <= (near > LABEL_MOST_LEADS ? nearest : fmax(nearest, farthest));
+    return layout_distance(&items[i], &places[i].box, 0, 0) <= (near > LABEL_MOST_LEADS ? nearest : fmax(nearest, farthest));
 }

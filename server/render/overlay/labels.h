@@ -9,12 +9,12 @@ struct label_box {
     double x, y, width, height;
 };
 
-enum { LABEL_NONE = -1, LABEL_SLOTS = 16, LABEL_FIRST_FAR = 8, LABEL_MOST_BAD = 12 };
+enum { LABEL_NONE = -1, LABEL_SLOTS = 20, LABEL_FIRST_DIAGONAL = 8, LABEL_FIRST_FAR = 12, LABEL_MOST_BAD = 12 };
 /* maximum number of leader lines of a call-out (a label shared by several alarm rings); if more rings are within LABEL_FARTHEST, only the
    nearest ring gets a line */
 enum { LABEL_MOST_LEADS = 4 };
-/* Largest distance between the label of alarm rings and the rings' bounding box, unless it is the frame's only label. Also the
-   longest leader line, unless all rings are farther away. In overlay units: 1 is a pixel at 1280x720. */
+/* Largest distance between the label of alarm rings and the centre of its nearest ring, unless it is the frame's only label of rings. Also
+   the longest leader line, unless all rings are farther away. In overlay units: 1 is a pixel at 1280x720. */
 enum { LABEL_FARTHEST = 60 };
 enum label_rank { LABEL_NOT_WANTED = -1, LABEL_PLAIN, LABEL_DOUBTFUL, LABEL_BAD, LABEL_BEYOND };
 

@@ -28,6 +28,8 @@ struct label_layout {
     int columns, rows, *heads; /* grid over the frame. heads: by grid cell, index of the cell's first occupied box; -1: the cell has none */
     struct cell_entry *entries;
     size_t entry_count, entry_capacity;
+    /* by item: index of the group of alarm rings that share the item's label; LABEL_NONE: not in a group */
+    int *group_of;
     int *labelled; /* indices of items (markers) that have a label */
     int labelled_count;
     double used;
@@ -39,10 +41,16 @@ void layout_init(struct label_layout *layout, const struct label_item *items, si
 /* Returns the box of an item's label in a slot (candidate position around the marker). across, down: half the width and height of the group
    of markers around item->x, item->y; 0 for a single marker. */
 struct label_box layout_box(const struct label_item *item, int slot, double unit, double across, double down);
+/* Returns the distance in pixels of a label from the centre of an item's marker, or from a group of markers around this centre. across,
+   down: half the width and height of the group; 0 for a single marker. */
+double layout_distance(const struct label_item *item, const struct label_box *box, double across, double down);
 /* Returns whether a box lies within the area of the frame in which labels may be placed. */
 bool layout_is_inside(const struct label_layout *layout, const struct label_box *box);
-/* Returns whether a box overlaps no occupied box. Ignored are the boxes of `owner`, and boxes that `over` allows a label to cover. */
-bool layout_is_free(const struct label_layout *layout, const struct label_box *box, int owner, enum label_over over);
+/* Returns the box with `more` pixels added on each side. */
+struct label_box layout_grow(const struct label_box *box, double more);
+/* Returns whether a box overlaps no occupied box, and is far enough from alarm rings. Ignored are the boxes of `owner`, and boxes that
+   `over` allows a label to cover. The box may come closer to the rings of `group` than to others; LABEL_NONE: the box has no group. */
+bool layout_is_free(const struct label_layout *layout, const struct label_box *box, int owner, int group, enum label_over over);
 /* Places one label for these items (markers) in `box` and marks the box as occupied; more than one item makes the label a call-out (one
    label for several alarm rings). slot: the label's position relative to the marker, as an index of the candidate positions; stored, so
    that the next frame tries it first. */

@@ -10,6 +10,7 @@
 /* CLOSE: distance in units (pixels at 1280x720) below which alarm rings share a call-out (one label); STILL_CLOSE: the same for rings that
    shared a call-out in the previous frame */
 static const double CLOSE = 26, STILL_CLOSE = 34;
+static const double APART = 8;     /* least distance between two labels of rings, in units */
 static const double GROWTH = 1.25; /* factor by which CLOSE and STILL_CLOSE grow, repeatedly, until at most MAX_GROUPS labels remain */
 /* maximum number of labels; more alarm rings than this count as a flood, in which rings of one asset share a call-out */
 enum { MAX_GROUPS = 24 };
@@ -43,7 +44,6 @@ struct rings {
     /* [ring, in the order of `order`]: position in pixels at which the ring counts when near rings are grouped: its own, or in
        a flood of alarms the centre of its asset's rings */
     double (*anchors)[2];
-    int *group_of;          /* [ring, in the order of `order`]: index in `groups` of the group to which the ring belongs */
     int *members;           /* indices of the items (markers) of all groups of alarm rings, group after group */
     struct offset *offsets; /* sorted by distance */
 };
@@ -70,6 +70,12 @@ static struct offset *make_offsets(void)
 static const struct label_item *ring_at(const struct rings *rings, size_t i)
 {
     return &rings->layout->items[rings->order[i]];
+}
+
+/* Returns the index in `groups` of the group that contains an alarm ring. i: index in `order`. */
+static int *group_of(const struct rings *rings, size_t i)
+{
+    return &rings->layout->group_of[rings->order[i]];
 }
 
 /* Sets the position that represents each alarm ring when rings are grouped: its own, or in a flood the centre of all rings of its
@@ -165,10 +171,10 @@ static void make_groups(struct rings *rings, int *first)
     int *next = rings->members;
     rings->group_count = 0;
     for (size_t i = 0; i < rings->count; i++) {
-        int root = root_of(first, (int)i), index = root == (int)i ? (int)rings->group_count++ : rings->group_of[root];
+        int root = root_of(first, (int)i), index = root == (int)i ? (int)rings->group_count++ : *group_of(rings, (size_t)root);
         if (root == (int)i)
             rings->groups[index] = (struct ring_group){ .count = 0 };
-        rings->group_of[i] = index;
+        *group_of(rings, i) = index;
         rings->groups[index].count++;
     }
     for (size_t i = 0; i < rings->group_count; i++) {
@@ -177,7 +183,7 @@ static void make_groups(struct rings *rings, int *first)
         rings->groups[i].count = 0;
     }
     for (size_t i = 0; i < rings->count; i++) {
-        struct ring_group *group = &rings->groups[rings->group_of[i]];
+        struct ring_group *group = &rings->groups[*group_of(rings, i)];
         group->members[group->count++] = rings->order[i];
     }
     for (size_t i = 0; i < rings->group_count; i++)
@@ -197,29 +203,34 @@ static struct label_box box_at(const struct rings *rings, const struct ring_grou
                                item->height };
 }
 
-/* Returns whether a label in this slot (candidate position) is at most LABEL_FARTHEST away from its group's alarm rings. */
+/* Returns whether a label in this slot (candidate position) is at most LABEL_FARTHEST away from one of its group's alarm rings. */
 static bool is_near(const struct rings *rings, const struct ring_group *group, int slot)
 {
     struct label_box box = box_at(rings, group, slot);
-    double aside = fmax(0, fmax(box.x - group->item.x, group->item.x - box.x - box.width) - group->across);
-    double away = fmax(0, fmax(box.y - group->item.y, group->item.y - box.y - box.height) - group->down);
-    return hypot(aside, away) <= LABEL_FARTHEST * rings->layout->area->unit;
+    const struct label_item *items = rings->layout->items;
+    double farthest = LABEL_FARTHEST * rings->layout->area->unit;
+    /* For most slots, the distance from the rectangle around all rings answers the question. */
+    bool near = layout_distance(&group->item, &box, group->across, group->down) <= farthest, found = false;
+    for (size_t i = 0; i < group->count && near && !found; i++)
+        found = layout_distance(&items[group->members[i]], &box, 0, 0) <= farthest;
+    return found;
 }
 
 /* Returns whether the label of a group of alarm rings, with `more` pixels of free space around, fits in this slot (candidate position
-   around the group). Labels of earlier groups count as occupied. */
+   around the group). The label keeps a distance of APART from the labels of earlier groups. */
 static bool is_free(const struct rings *rings, const struct ring_group *group, int slot, double more, enum label_over over)
 {
-    struct label_box box = box_at(rings, group, slot);
-    struct label_box grown = { box.x - more, box.y - more, box.width + 2 * more, box.height + 2 * more };
+    struct label_box box = box_at(rings, group, slot), grown = layout_grow(&box, more);
+    struct label_box wide = layout_grow(&box, more + APART * rings->layout->area->unit);
     int owner = slot < LABEL_SLOTS && group->count == 1 ? group->members[0] : LABEL_NONE - 1;
+    int index = (int)(group - rings->groups);
     if (rings->group_count > 1 && !is_near(rings, group, slot))
         return false;
-    if (!layout_is_inside(rings->layout, &box) || !layout_is_free(rings->layout, &grown, owner, over))
+    if (!layout_is_inside(rings->layout, &box) || !layout_is_free(rings->layout, &grown, owner, index, over))
         return false;
     for (const struct ring_group *other = rings->groups; other < group; other++)
-        if (other->slot != NOWHERE && grown.x < other->box.x + other->box.width && other->box.x < grown.x + grown.width &&
-            grown.y < other->box.y + other->box.height && other->box.y < grown.y + grown.height)
+        if (other->slot != NOWHERE && wide.x < other->box.x + other->box.width && other->box.x < wide.x + wide.width &&
+            wide.y < other->box.y + other->box.height && other->box.y < wide.y + wide.height)
             return false;
     return true;
 }
@@ -297,7 +308,6 @@ void layout_place_rings(struct label_layout *layout, const int *order, size_t co
     int *first = mem_array(count, sizeof(*first));
     rings.groups = mem_array(count, sizeof(*rings.groups));
     rings.anchors = mem_array(count, sizeof(*rings.anchors));
-    rings.group_of = mem_array(count, sizeof(*rings.group_of));
     rings.members = mem_array(count, sizeof(*rings.members));
     rings.offsets = count ? make_offsets() : NULL;
     set_anchors(&rings);
@@ -306,9 +316,9 @@ void layout_place_rings(struct label_layout *layout, const int *order, size_t co
     make_groups(&rings, first);
     while (count && !place_groups(&rings)) {
         for (size_t i = 0; i < count; i++) {
-            int mate = rings.groups[rings.group_of[i]].mate;
+            int mate = rings.groups[*group_of(&rings, i)].mate;
             for (size_t k = 0; k < count && mate != LABEL_NONE; k++)
-                if (rings.group_of[k] == mate) {
+                if (*group_of(&rings, k) == mate) {
                     join(first, (int)i, (int)k);
                     mate = LABEL_NONE;
                 }
@@ -319,7 +329,6 @@ void layout_place_rings(struct label_layout *layout, const int *order, size_t co
         layout_set(layout, rings.groups[i].members, rings.groups[i].count, &rings.groups[i].box, rings.groups[i].slot);
     mem_free(rings.groups);
     mem_free(rings.anchors);
-    mem_free(rings.group_of);
     mem_free(rings.members);
     mem_free(rings.offsets);
     mem_free(first);
