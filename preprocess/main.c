@@ -274,7 +274,8 @@ static bool confine_self(const struct plant *plant, const char *folder, char **a
     for (size_t i = 0; i < plant->group_count; i++)
         child_paths_add(&paths, plant->groups[i].gp.fit, CONFINE_READ);
     if (notifies)
-        /* service_patience, which asks the service manager for more time, reads in /proc whether other processes are active */
+        /* service_patience, which asks the service manager for more time, needs /proc: it reads there whether other processes
+           are active */
         child_paths_add(&paths, "/proc", CONFINE_READ);
     int status = child_self_confine(&paths, notifies, argv);
     child_paths_finish(&paths);

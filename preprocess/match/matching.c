@@ -133,7 +133,8 @@ static bool read_optional(struct matching_run *run, const char *name,
     return good;
 }
 
-/* Reads the plant in this process, not in the confined child, because the daemon reads the same files too. */
+/* Reads the plant in this process. The confined child is only for the exported tag list; the plant's own files are read by the
+   daemon, too. */
 static bool read_plant(struct matching_run *run)
 {
     const struct matching_params *params = run->params;

@@ -22,7 +22,7 @@ struct prepare_asset {
     size_t sensor_count;
     float *surface_distances_m; /* by sensor: its distance from the surface, metres; NULL: the asset could not be prepared */
     double size_m[3];           /* size of the asset in its own frame, metres; size_m[2] is the height; 0: unknown */
-    double far_m;               /* a sensor farther than this from the surface causes a warning, metres */
+    double far_m;               /* distance of a sensor from the surface above which a warning is printed, metres */
     /* recipe: hash of the model and of the parameters by which the asset is cut out (build_recipe()) */
     uint64_t recipe, key, geometry_key, distances_key;
     char *missing;               /* why the model, or a sensor's node, cannot be used; NULL: no such failure */

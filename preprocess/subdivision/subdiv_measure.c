@@ -70,7 +70,8 @@ bool subdiv_find_parts(struct subdiv *subdiv)
 
 struct origin_sight { /* the triangles of the original model that a sample point may be projected onto */
     const struct subdiv *subdiv;
-    uint32_t origin[2]; /* finest level of detail: the point is projected onto one of these two triangles */
+    /* finest level of detail: indices of the two triangles of the original model onto which the point may be projected */
+    uint32_t origin[2];
     /* coarser levels of detail: the point is projected onto a triangle of this connected component that faces the same way as `normal` */
     uint32_t part;
     double normal[3];
@@ -218,7 +219,7 @@ struct line { /* sample points along a mesh edge, in order from its end a to its
     double t[POINTS];
     const float *interp[POINTS], *geodesic_m[POINTS];
     int count;
-    float *room; /* buffer for the distances and samples of points that are still to be added to the line */
+    float *room; /* buffer for the distances and samples (sensors' weights) of sample points that are still to be added */
     struct interp_norm *norms;
 };
 

@@ -99,7 +99,8 @@ viewport.onDrawn = (newPicture, isWarped) => {
     }
 };
 new ResizeObserver(refresh).observe(byId('viewport'));
-// repositions the sensor labels when one of these panels opens or closes, so that they move aside
+// when the toolbar's parts or the panels of picture settings or views open or close, repositions the sensor labels, so that
+// they move aside
 for (const id of ['display', 'more', 'picture-panel', 'views'])
     new MutationObserver(refresh).observe(byId(id), { attributeFilter: ['class'] });
 // updates the sensor's card twice a second, because it shows the age of the value

@@ -8,7 +8,7 @@ import { add, along, cross, dot, finite, length, middle, mix, scale, subtract, u
 // LEAST_BOX_M: minimum length of a box's sides; MARGIN: minimum distance of a plane from the plant's bounds, inside them, as a
 // fraction of their size
 const LEAST_BOX_M = 0.05, MARGIN = 1e-3;
-const NEAR_M = 0.02; // metres: the part of a handle's line that is nearer to the camera is cut off
+const NEAR_M = 0.02; // the part of a handle's line that is nearer to the camera than this many metres is cut off
 // minimum squared sine of the angle between viewing ray and handle direction; below this, a drag is undefined
 const STEEP = 0.03;
 

@@ -3,7 +3,8 @@
 
 export const PLAIN = ['jpeg', 'png'];
 const MIME = { jpeg: 'image/jpeg', png: 'image/png' };
-const AGAIN_MS = 10000; // largest time in milliseconds between two failures after which the decoder counts as broken
+// a second failure within this many milliseconds means that the H.264 decoder is broken; a single one may be a damaged frame
+const AGAIN_MS = 10000;
 
 // Decodes frames to pictures that a canvas can draw. onCodecs(list) is called with the codecs to request from now on, onLost() when a key
 // frame is needed.

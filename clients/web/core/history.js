@@ -105,7 +105,7 @@ export function witnesses(tags, most = 16) {
     return [...ends].slice(0, most).map(([source, pair]) => ({ source, tags: [...new Set(pair)] }));
 }
 
-// Returns the periods in which none of these series has a value: [[from, to]], microseconds.
+// Returns the periods in which none of the given series has a value: [[from, to]], microseconds.
 export function lost(all, fromUs, toUs) {
     let common = [[fromUs, toUs]];
     for (const series of all) {

@@ -35,8 +35,8 @@ export function collectErrors() {
                 found.set(text, (found.get(text) ?? []).concat(id ? [Number(id)] : []));
         }
     };
-    // returns the lines that the reader prints about these errors: records in the format that preprocess/import/findings.h
-    // describes
+    // returns the lines that the reader prints about the captured errors: records in the format that
+    // preprocess/import/findings.h describes
     const lines = (model, solids) => {
         const built = found.size > 0 ? [...solids.elements.values()].flatMap(({ parts }) => parts.map(({ item }) => item)) : [];
         const instead = reached(model, built), left = [...found].map(([text, ids]) =>

@@ -79,7 +79,7 @@ export class AlarmList {
 
     setOpen(open) {
         for (const name of open ? ['engineer', 'import'] : [])
-            this.modules.there(name)?.close(); // closes the other panels, which share this space
+            this.modules.there(name)?.close(); // closes the engineering and import panels, which are shown in the same place
         this.shareRoom(open);
         byId('alarms').hidden = !open;
         byId('alarm-strip').setAttribute('aria-expanded', open);
@@ -204,7 +204,8 @@ export class AlarmList {
                 byId(id).value = this.filter[name] = NO_FILTER[name];
         if (this.journalOpen)
             this.modules.there('journal')?.unfilter();
-        byId(this.journalOpen ? 'journal-tab' : 'alarms-tab').focus(); // moves the focus away from that button, which is about to be hidden
+        // moves the keyboard focus away from the button `alarms-applied`, which is about to be hidden
+        byId(this.journalOpen ? 'journal-tab' : 'alarms-tab').focus();
         this.show();
     }
 

@@ -52,7 +52,7 @@ export class Moment {
         travel(this.session, this.alarm.us + afterUs);
     }
 
-    // Hides the alarm's name when the page returns from that moment to the present.
+    // Hides the alarm's name when the page returns from the moment before the alarm to the present.
     hear() {
         const { atUs } = this.session.time;
         if (this.alarm && atUs === null && this.arrived)

@@ -35,7 +35,9 @@ export class Warp {
         // time (performance.now(), milliseconds) since which decoded pictures have waited for the worker that decodes their
         // depth grids; null: they do not wait
         this.waitsFrom = null;
-        this.grids = [];    // newest depth grids, the newest last: { id, depth, parts: [{ grid, mesh }] or null until decoded, fails }
+        // newest depth grids, the newest last: { id, depth, parts: [{ grid, mesh }] or null until decoded, fails (true: it
+        // cannot be decoded) }
+        this.grids = [];
         this.held = null;   // newest frame, decoded but not drawn on the viewport's canvas: { frame, picture }
         this.source = null; // picture that is drawn warped: { picture, camera, parts }
         // loaded: the `source` that the painter (WebGL or processor) has loaded; painted: the one that it has drawn
