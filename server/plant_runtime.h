@@ -26,7 +26,8 @@ struct plant_runtime_context { /* objects that a reload does not replace */
     struct plant_clock *clock;   /* the plant's clock */
     struct lease_keeper *keeper; /* lease keeper of a core in a pair (leader or standby); NULL: there is no pair */
     bool *follows;               /* true: another core polls devices and owns the alarms; plant_runtime_lead() sets it to false */
-    void (*notify)(void *arg);   /* called on any thread when frames or alarm changes can be collected */
+    /* called, on any thread, when encoded frames or changes of alarms wait for the event loop to collect them */
+    void (*notify)(void *arg);
     void *notify_arg;
 };
 
@@ -37,7 +38,7 @@ struct plant_runtime {
     struct plant_services services;
     struct publisher *publisher;    /* thread that publishes readings and alarms to an MQTT broker; NULL: nothing is published */
     struct source **sources;        /* sources of readings, with the same indices as plant->sources */
-    struct source *derived;         /* pseudo-source that computes derived tags; NULL: there are none */
+    struct source *derived;         /* pseudo-source that computes derived tags (from other tags' readings); NULL: the plant has none */
     /* time spans whose points were not yet read from PostgreSQL when a reload begins; the historian of the next runtime reads
        them */
     struct postgres_owed owed;

@@ -9,7 +9,8 @@
 
 #include "base/math/simd.h"
 
-enum { TILE_W = 16, TILE_H = PLANES_BAND_PX / 2 }; /* width and height of a tile, in chroma samples */
+/* size of a tile in chroma samples, each of which covers 2 x 2 pixels; the weighted mean is computed for whole tiles */
+enum { TILE_W = 16, TILE_H = PLANES_BAND_PX / 2 };
 /* a pixel counts as coloured if its chroma differs from grey by at least this many steps of 8-bit chroma */
 enum { COLOUR = 16 };
 static const float GREY = 4; /* weight of a grey pixel in the mean; a coloured pixel's weight is this plus the square of its chroma */

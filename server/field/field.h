@@ -72,7 +72,7 @@ bool field_baseline(const struct field *field, const struct field_params *params
 void field_set_cache_limit(struct field *field, size_t bytes);
 /* Returns the size in bytes of the field's cache. */
 size_t field_bytes(const struct field *field);
-/* Frees all cached fields and weights. */
+/* Frees all fields and sensors' weights that the cache of this field object holds. */
 void field_clear_cache(struct field *field);
 
 /* Updates the scalars of the first `count` vertices of one asset, which are those of one level of detail, to the snapshot, and

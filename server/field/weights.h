@@ -127,7 +127,7 @@ void weights_destroy(struct weights **weights);
 size_t weights_bytes(const struct field_layout *layout);
 /* Returns the size in bytes of the columns (each sensor's weights) of all vertices, cached or not. */
 size_t weights_column_bytes(const struct weights *weights);
-/* Returns the size in bytes of the cached columns. */
+/* Returns the size in bytes of the cached columns of G (a column is one sensor's weights at all vertices). */
 size_t weights_kept_bytes(const struct weights *weights);
 /* Starts caching columns as they are computed: as many as fit into `bytes`, from the first vertices on. Call only while none
    are cached. Returns weights_kept_bytes(), or 0 if no column fits or memory runs out. */

@@ -26,7 +26,7 @@ enum { ATTEMPTS = sizeof(attempts) / sizeof(attempts[0]) };
 
 /* Contexts of this process. EGL cannot be used while an OSMesa context exists, so all contexts must be of the same kind. */
 static struct {
-    pthread_mutex_t lock; /* held while any thread creates or destroys a context */
+    pthread_mutex_t lock; /* lock that a thread holds while it creates or destroys a GL context */
     /* --- below: under lock */
     int count;         /* number of living contexts */
     enum gl_kind kind; /* kind of the existing contexts */

@@ -13,8 +13,8 @@ struct gl_impl {
        on failure, with the reasons appended to `why`. */
     struct gl *(*create)(const struct gl_device *device, bool software, struct text *why);
     void (*destroy)(struct gl *gl);
-    bool (*current)(const struct gl *gl); /* returns true if the context exists and is current */
-    void (*lose)(struct gl *gl);          /* destroys the context but keeps the struct (for gl_lose()) */
+    bool (*current)(const struct gl *gl); /* returns true if the GL context exists and is current in this thread */
+    void (*lose)(struct gl *gl);          /* destroys the GL context but keeps the struct gl (for gl_lose()) */
 };
 
 /* Returns true if other contexts of this kind exist, which may be in use. Only `create` and `destroy` may call this, because

@@ -251,7 +251,7 @@ static void report_left_out(struct history_reader *reader, int tag, const struct
 
 struct month_request { /* the part of a tag's series to be read from a month's file */
     const char *tag;
-    int level; /* rollup level whose buckets to read; -1: points */
+    int level; /* rollup level (set of precomputed buckets of one length) whose buckets are to be read; -1: the points are to be read */
     int64_t from_us, to_us;
 };
 

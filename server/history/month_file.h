@@ -100,7 +100,7 @@ int month_file_clear_held(struct month_file *file);
    points of that age from the outbox (points to send to PostgreSQL), and adds their number to *unsent. */
 int month_file_cut(struct month_file *file, int64_t until_us, bool shrink, int64_t *unsent);
 struct month_file_size {
-    int64_t bytes, free_bytes; /* size of the file on disk, and of unused space within it */
+    int64_t bytes, free_bytes; /* bytes: size of the file on disk; free_bytes: unused space within it */
     bool shrinks;
 };
 int month_file_size(struct month_file *file, struct month_file_size *size);

@@ -36,7 +36,8 @@ struct month_file {
     size_t tag_count, waiting;
     int64_t *ids;                  /* [tag]: the tag's id in the file; 0: not known yet */
     struct month_rollups *rollups; /* [tag]: incomplete rollup buckets */
-    struct month_chunk *chunk;     /* the chunk (times shared by several blocks) read last */
+    /* the chunk (list of times shared by several blocks) that was read last, kept because other blocks share its times */
+    struct month_chunk *chunk;
     struct month_seconds *seconds; /* newest points, not in blocks yet, as read by this handle from the table `second` */
     /* number and stamp (increases with each write) of the last written row of the table `second` */
     int64_t slot, stamp;

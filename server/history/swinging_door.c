@@ -43,7 +43,7 @@ static int swing(struct swinging_door *door, const struct swinging_door_params *
     return count;
 }
 
-/* Returns the newest sample that the filter has seen. */
+/* Returns the newest sample that the filter has seen, whether or not it was recorded. */
 static const struct history_point *last(const struct swinging_door *door)
 {
     return door->has_skipped ? &door->skipped : door->has_held ? &door->held : &door->anchor;

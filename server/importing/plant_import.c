@@ -32,7 +32,7 @@ struct plant_import {
     enum import_phase phase;
     unsigned number; /* number of import orders since the daemon's start; increases with each order */
     struct text said;
-    char *why; /* why the last import order failed; NULL: it succeeded */
+    char *why; /* reason why the last import order failed; NULL: it succeeded */
 };
 
 /* Reads the stored choice of units, axis and encoding from its file, with the text "UNITS/UP/ENCODING/MESH_UNITS"; trailing

@@ -32,7 +32,7 @@ struct loop_checks {
     struct file_writer *writer;
     char *folder, *path;
     struct loop_check *at; /* [tag]: newest loop check */
-    uint64_t *numbers;     /* [tag]: sequence number (loop_checks_number()) of the tag's newest check */
+    uint64_t *numbers;     /* [tag]: sequence number (loop_checks_number()) of the tag's newest loop check */
     uint64_t number;
     bool begun;
     /* [tag]: true if pictures mark the tag as unproven, because it has no passed loop check (test with a value forced at the

@@ -17,12 +17,12 @@ enum hand_over_step { HAND_OVER_NONE, HAND_OVER_ENDS_POLLING, HAND_OVER_SENDS, H
 struct net {
     struct server_context server;
     struct lws_vhost *vhost;
-    lws_sorted_usec_list_t timer; /* wakes the event loop at the monotonic time timer_ns */
+    lws_sorted_usec_list_t timer; /* timer of libwebsockets that wakes the event loop at the monotonic time timer_ns */
     int64_t timer_ns;
-    int64_t ticked_ns;   /* monotonic time when the sessions last ran their tick */
+    int64_t ticked_ns;   /* monotonic time when the event loop last called session_on_tick() (timed work) for its sessions */
     int64_t readings_ns; /* monotonic time when the next snapshot of readings is due (reading_updates.c) */
     struct cpu_meter cpu;
-    int64_t cpu_ns; /* monotonic time when the processors' load was last read */
+    int64_t cpu_ns; /* monotonic time when the event loop last measured how busy the processors are */
     _Atomic bool stopping, look, drain, readings_changed, lead_ended;
     struct { /* steps of the shutdown in which this core hands the lead to its standby (hand_over.c) */
         enum hand_over_step step;

@@ -36,7 +36,7 @@ size_t assumed_places_choose(const struct scene *scene, const struct assumed_fil
 /* Returns the text of the tag list with the column `Place` cleared in the rows of the accepted tags, and nothing else changed
    (mem_free). `list`: the present text. Returns NULL on failure, with the reason in *why. */
 char *assumed_places_accept(const struct plant *plant, const char *list, const uint8_t *outcome, struct refusal *why);
-/* Describes the filter as text, for the audit trail. */
+/* Describes the filter (which sensors' assumed places are accepted) as text, for the audit trail. */
 void assumed_filter_text(const struct plant *plant, const struct assumed_filter *filter, char *out, size_t size);
 
 #endif

@@ -16,7 +16,7 @@ struct placing_params {
     struct workers *workers;
     const struct scene *scene;
     const char *folder;        /* folder of the prepared files; read only by placing_create() */
-    void (*notify)(void *arg); /* called by any thread when placing_collect() has new results */
+    void (*notify)(void *arg); /* called, on any thread, when newly computed distances or coverage answers wait for placing_collect() */
     void *notify_arg;
 };
 struct placing;

@@ -278,7 +278,7 @@ struct opcua_deadband { /* smallest change of a node that the OPC UA server repo
     bool percent; /* true: in percent of the node's range (EURange); false: in the node's unit */
 };
 
-struct tag_signal { /* a tag's value in its device: address and encoding */
+struct tag_signal { /* how a tag's value is read from its device: address and encoding */
     char *address;  /* address as written in the tag list: a register, a series name, a topic, or = and an expression */
     /* topic, path: the two parts of the address. MQTT: the full topic, and the path of the value in its payload ("": the
        source's default). Sparkplug: GROUP/NODE[/DEVICE], and the metric. OPC UA: the namespace URI, and an identifier such as
@@ -312,7 +312,7 @@ struct tag_scale { /* conversion from the raw value to the tag's unit */
     struct unit_change change; /* conversion of values from own_unit to the unit in which the plant shows the tag */
 };
 
-struct tag_place { /* where a tag's sensor is on its asset */
+struct tag_place { /* position of a tag's sensor on its asset */
     /* `Place: equipment`: the exact position on the asset is unknown; the reading represents the whole asset (field/field.h) */
     bool assumed;
     bool has_position;    /* true: position_m is set; false: `node` gives the position or, without a node, the middle of the asset */
@@ -323,7 +323,7 @@ struct tag_place { /* where a tag's sensor is on its asset */
     char *lost_asset;
 };
 
-struct tag_validity {                 /* conditions under which a tag's reading is good */
+struct tag_validity {                 /* settings that decide from age, changes and a quality tag whether a tag's reading is good */
     /* age in seconds at which the tag's reading becomes stale. Default: three poll intervals, at least 5 s; OPC UA and Sparkplug: never */
     double stale_s;
     bool states_stale;                /* the row states stale_s */
@@ -365,7 +365,7 @@ struct plant_tag {
 };
 
 enum { PLANT_ENVIRONMENTS = 8 };
-struct plant_environment { /* panorama image that lights the plant */
+struct plant_environment { /* panorama image whose light falls on the plant in pictures */
     char *name;            /* name of the image file without its extension; never "sky" */
     char *path;
 };
@@ -416,7 +416,7 @@ struct plant_screens { /* the plant file's views, tours, other plants and walls 
 struct plant {
     struct plant_files files;
     char *name, *time_zone; /* name of the plant, and IANA name of its time zone; default UTC */
-    enum axis up;           /* upward axis of the plant's coordinate frame */
+    enum axis up;           /* axis of the plant's coordinate frame that points up */
     struct plant_display display;
     struct plant_screens screens;
     struct plant_conversion *conversions;

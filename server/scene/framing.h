@@ -11,7 +11,9 @@ enum side { SIDE_NOW, SIDE_TOP, SIDE_BOTTOM, SIDE_FRONT, SIDE_BACK, SIDE_LEFT, S
 struct framing {
     int asset, tag;              /* indices of the asset or tag to show; -1: none; both -1: the whole plant */
     enum side side;              /* side from which to look. SIDE_NOW: as the camera looks now, but at a sensor from outside its asset */
-    struct camera_window window; /* rectangle of the picture for the subject to fill */
+    /* rectangle of the picture that the subject (plant, asset or sensor) is to fill; coordinates from -1 to 1 along each axis;
+       all zero: the whole picture */
+    struct camera_window window;
 };
 
 /* Looks up a name: first as an asset, then as a tag on an asset. NULL means the whole plant. Sets every member of the framing.

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The encoded frame that answers a client's frame request. */
+/* The encoded frame, or the reason why there is none, that answers a client's frame request. */
 #ifndef SERVICE_ENCODED_FRAME_H
 #define SERVICE_ENCODED_FRAME_H
 #include "service/frame_request.h"

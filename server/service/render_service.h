@@ -35,7 +35,8 @@ struct render_service_params {
     /* views to draw once in render_service_create(), so that their caches and shaders are ready for requests; read only during that call */
     const struct view *first;
     size_t first_count;
-    void (*notify)(void *arg); /* callback on any thread when frames or pick answers can be collected */
+    /* callback, on any thread, when encoded frames or answers to picks (what is at a pixel) can be collected */
+    void (*notify)(void *arg);
     void *notify_arg;
 };
 

@@ -96,7 +96,7 @@ void session_requested(struct session *session, const struct frame_request *requ
 void session_not_signed(struct session *session, const struct message_error *why);
 /* Takes ownership of an encoded frame, or of the answer that there is no frame (nothing new, or failed). */
 void session_on_frame(struct session *session, struct encoded_frame *encoded);
-/* Returns whether session_next_frame() would return a frame now. */
+/* Returns true if a frame is ready to be sent, so that session_next_frame() would return it. */
 bool session_has_frame(const struct session *session);
 /* Returns whether the client gets depth grids (coarse depth for warping pictures); the message `welcome` tells it so. */
 bool session_gets_depth(const struct session *session);
@@ -162,7 +162,7 @@ void session_on_historical_snapshot(struct session *session, int64_t at_us, bool
 void session_follow(struct session *session, struct session *leader, int64_t now_ns);
 /* Replies that the session to follow does not exist. */
 void session_follow_nobody(struct session *session);
-/* Tells a following session that its leader's view changed. */
+/* Call it when the view of the leader that this session follows has changed: tells the client so and requests a new frame. */
 void session_on_leader(struct session *session, int64_t now_ns);
 /* Notes that the leader is about to be destroyed. The session keeps showing the leader's last view until the client follows
    another session or nobody. */

@@ -11,7 +11,7 @@
 void session_reply(struct session *session, char *text);
 /* Counts an error in the session's statistics, and queues its message for the client. */
 void session_reply_error(struct session *session, const struct message_error *error);
-/* Drops the frames that are encoded and not sent yet. */
+/* Frees the frames of this session that are encoded but not sent yet. */
 void session_drop_ready(struct session *session);
 /* Notes that an input changed the view: a preview is due now, and a refined (detailed) frame once the camera rests. */
 void session_on_input(struct session *session, int64_t now_ns);

@@ -23,7 +23,7 @@ struct session_identity {
     enum role role;
     uint8_t address[16];        /* address of the client; an IPv4 address has the form ::ffff:a.b.c.d */
     char from[64];              /* address of the client as text; empty: not known */
-    enum login login;           /* result of checking the token in the client's hello */
+    enum login login;           /* result of checking the token in `hello`, the client's first message */
     struct token_holder holder; /* holder of the token; role ROLE_NOBODY: no token was given, or it was not accepted */
     /* on a renderer (daemon that draws for a core): the client's token, for the core; "": none, or not forwarded */
     char token[TOKEN_MAX_CHARS + 1];

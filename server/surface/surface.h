@@ -31,7 +31,7 @@ struct surface_params { /* all zero: the program chooses the values from the mod
     /* largest gap between faces, in metres, that repair closes; if the program chooses the limit, it is smaller at thin parts
        (parts.h) */
     double tolerance_m;
-    double spacing_m;   /* maximum length in metres of an edge after sampling */
+    double spacing_m;   /* length in metres above which sampling splits an edge of the surface */
     char *why;          /* buffer of SURFACE_WHY_BYTES for the reason if no surface can be built; NULL: the reason is logged instead */
 };
 #define SURFACE_WHY_BYTES 160

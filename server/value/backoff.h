@@ -21,7 +21,7 @@ struct host_turn { /* zero-initialise */
 /* Moves on to the next of `count` hosts. Returns the monotonic time at which to try it: now_ns, or later if all hosts have failed since
    a connection last succeeded. */
 int64_t host_turn_next_ns(struct host_turn *turn, int count, int64_t now_ns);
-/* Records that a connection to the current host succeeded. */
+/* Records that a connection to the current host succeeded, so that the next failure starts again with the shortest delay. */
 void host_turn_succeeded(struct host_turn *turn);
 
 #endif

@@ -10,7 +10,7 @@
 struct openid_reply {
     int status;    /* HTTP status of the provider's answer; 0: no answer */
     json_t *json;  /* JSON in the body of the provider's answer; NULL: there was no answer, or its body is not JSON */
-    char why[256]; /* why the provider gave no answer */
+    char why[256]; /* reason why the provider gave no answer */
 };
 
 /* openid_get() and openid_post() return true if the provider answered, even with an error status; free the answer with

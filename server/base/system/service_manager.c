@@ -100,7 +100,7 @@ struct service_patience {
     int64_t used_ns; /* CPU time in nanoseconds that the processes had used at the last check; accessed only by this struct's thread */
     /* --- below: under `lock` */
     char *status;
-    int64_t since_ns; /* monotonic time when the status text was last set */
+    int64_t since_ns; /* monotonic time when the status text, which the service manager shows, was last set */
     bool ending;
 };
 

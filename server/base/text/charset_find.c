@@ -156,7 +156,9 @@ static const struct wide_model wide_models[] = {
 /* --- statistical models of one-byte encodings ------------------------------------------------------------------------------- */
 
 struct narrow_model {
-    const char *name, *lower, *upper, *rare; /* lower, upper: letters, most frequent first; rare: rare letters */
+    /* letters of the languages that use this encoding: lower, upper: common letters, most frequent first; rare: letters that
+       occur rarely */
+    const char *name, *lower, *upper, *rare;
     double prior;
     bool latin; /* true: Latin script: words mix the encoding's own letters with ASCII letters */
 };
@@ -364,7 +366,7 @@ static size_t take_sample(const char *bytes, size_t count, char sample[SAMPLE_BY
             continue;
         length = end - first < MAX_LINE - 2 ? end - first : MAX_LINE - 2;
         if (first > at) {
-            first--; /* the sample includes the letter before the high bytes */
+            first--; /* lets the sample begin with the letter before the high bytes */
             length++;
         }
         memcpy(sample + taken, bytes + first, length);

@@ -65,7 +65,8 @@ struct postgres {
     struct waiting_month *months;
     size_t month_count;
     int64_t looked_ns, newest_ns, retry_ns, say_lost_ns;
-    int64_t lost;                  /* number of points deleted unsent but not yet logged */
+    /* number of points that were deleted from the outboxes without being sent, and that the log does not report yet */
+    int64_t lost;
     char said[POSTGRES_WHY_BYTES]; /* text of the last logged error; empty: no error */
     /* alone: this daemon holds the lock that makes it the only writer to the database; flushed: all points that an earlier run
        left in the outboxes have been sent */

@@ -246,7 +246,7 @@ static int serve_post(struct server_context *server, struct http_exchange *reque
     return import_post(server, request, path);
 }
 
-/* Answers 405. posts: true: the path accepts only POST. */
+/* Answers with status 405 (method not allowed). posts: true: the path accepts only POST. */
 static int refuse_method(const struct server_context *server, struct http_exchange *request, bool posts)
 {
     struct text text = { 0 };

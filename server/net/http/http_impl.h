@@ -148,7 +148,7 @@ bool request_may_change(struct server_context *server, struct http_exchange *req
 
 /* Returns whether the path is one of the import's paths that accept POST. */
 bool import_takes_post(const struct server_context *server, const char *path);
-/* Appends ", PATH" for each of the import's paths that accept POST. */
+/* Appends ", PATH" to `out` for each of the import's paths that accept POST, for the text of an error about the method. */
 void import_add_posts(const struct server_context *server, struct text *out);
 /* Handles the head of a POST request to a path of the import; the body may follow in later events. */
 int import_post(struct server_context *server, struct http_exchange *request, const char *path);

@@ -14,7 +14,7 @@ struct model_node { /* node of a model. The array of nodes is in depth-first ord
     uint32_t number; /* node's index in the model file; for a node added for an instance: index of the instanced node */
 };
 
-#define NODES_SEPARATOR '\n' /* character that separates the node patterns of an asset */
+#define NODES_SEPARATOR '\n' /* character between two node patterns in an asset's text of patterns (struct plant_asset, nodes) */
 
 /* Sets taken[i] for each node that a pattern matches, and for the node's sub-tree. Patterns that begin with ! clear taken[i]
    instead. patterns NULL: all nodes. Returns false with the pattern in `why` if a pattern matches no node. */

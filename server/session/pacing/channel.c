@@ -20,7 +20,8 @@ static const int64_t WAITED_NS = 1 * NS_PER_MS;
 /* size in bytes. A smaller frame may only raise the estimate of the bandwidth, because its measurement is too inexact to lower
    it. */
 static const size_t SMALL_BYTES = 4096;
-static const double SAMPLE_WEIGHT = 0.25; /* weight of a new measurement in smoothed values, 0..1 */
+/* weight, 0..1, of a new measurement when it is averaged with the earlier ones (exponential smoothing) */
+static const double SAMPLE_WEIGHT = 0.25;
 
 static void smooth(double *value, double sample)
 {

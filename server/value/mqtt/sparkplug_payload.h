@@ -17,7 +17,7 @@ enum sparkplug_form { /* form in which a message contains a metric's value */
 };
 
 struct sparkplug_metric {
-    const char *name; /* name of the metric; NULL: the alias identifies it */
+    const char *name; /* name of the metric; NULL: the message identifies the metric only by its alias */
     bool has_alias, is_historical, is_null;
     uint64_t alias;
     int64_t utc_ns;   /* UTC time stated by the metric or, if it states none, by its payload; 0: neither states a time */

@@ -41,7 +41,7 @@ bool opcua_client_missed(const struct opcua_client *client);
 int opcua_client_read(struct opcua_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200]);
 /* Returns the server's publishing interval in milliseconds if it is longer than the requested one; 0: it is not. */
 double opcua_client_publishing_ms(const struct opcua_client *client);
-/* Returns the number of nodes that the server has refused. */
+/* Returns the number of nodes to which the server has refused a subscription. */
 size_t opcua_client_refused(const struct opcua_client *client);
 
 #endif
