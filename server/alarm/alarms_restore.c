@@ -45,7 +45,9 @@ static void take(struct alarms *alarms, int index, const struct alarm *from)
 void alarms_restore(struct alarms *alarms, int index, const struct alarm *saved, struct instant now)
 {
     struct alarm from = *saved;
-    if (from.until.utc_ns) /* if the shelving time is already over, ends shelving in 1 ns, that is in the next alarms_tick() */
+    /* the shelving time may have ended while the daemon was not running; the next alarms_tick() then ends the shelving, because
+       it is set to end in 1 ns */
+    if (from.until.utc_ns)
         from.until.mono_ns = now.mono_ns + (from.until.utc_ns > now.utc_ns ? from.until.utc_ns - now.utc_ns : 1);
     /* held true: the alarm keeps its restored state until its tag's next sample; BAD and LINK alarms are never held */
     alarms->list[index].held = alarms->list[index].kind != ALARM_BAD && alarms->list[index].kind != ALARM_LINK;

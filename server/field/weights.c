@@ -389,8 +389,9 @@ uint8_t weights_lacking_at(const struct weights *weights, size_t vertex, bool fi
     return filled || weights->lost[vertex] < reach ? reach : weights->lost[vertex];
 }
 
-/* Returns whether a vertex has data, by its distances from the nearest usable sensor, the nearest sensor without a usable
-   reading, and the nearest sensor without alarm limits. */
+/* Returns whether a vertex has data. near_m, lost_m, no_limits_m: distances from the nearest usable sensor, from the nearest
+   sensor without a usable reading, and from the nearest sensor without alarm limits; the nearest of the three decides. reach_m:
+   distance beyond which no sensor counts. */
 static enum place place_of(float near_m, float lost_m, float no_limits_m, float reach_m)
 {
     if (no_limits_m < near_m && no_limits_m <= lost_m && no_limits_m <= reach_m)

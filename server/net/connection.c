@@ -280,7 +280,7 @@ static const struct http_refusal *judge_token(struct server_context *server, str
     struct connection *connection = connection_of(wsi);
     struct token_holder holder;
     bool good = tokens_find(server->logins.tokens, token, clock_utc_ns(), &holder);
-    /* an accepted token of a stream is recorded later, at the stream's `hello` */
+    /* true: the request opens a stream; the audit trail records its accepted token later, when the stream sends `hello` */
     bool stream = lws_hdr_total_length(wsi, WSI_TOKEN_UPGRADE) > 0;
     enum login login =
         login_throttle_judge(server->logins.throttle, connection->client->address, good ? holder.hash : NULL, clock_mono_ns());

@@ -12,8 +12,8 @@ struct stream {
     struct address_usage *usage; /* quota usage of the client's address; the connection holds the reference */
     int64_t in_begin_ns;         /* monotonic time when the first bytes of the message being received arrived */
     struct text in;              /* bytes of the client's current WebSocket message that have arrived so far */
-    /* number of bytes of the client's current message received so far, whether stored in `in` or dropped because there are too
-       many */
+    /* number of bytes of the client's current message that have arrived so far. Larger than the length of `in` if the message
+       is too long: its further bytes are dropped */
     size_t in_count;
     struct encoded_frame *sending;
     uint32_t seq;

@@ -10,8 +10,8 @@ enum { DEPTH_CELL_PX = 8 };
 
 /* Square of DEPTH_CELL_PX x DEPTH_CELL_PX pixels. Depths are those of the depth buffer: above 0, larger is nearer; 0: background. */
 struct depth_cell {
-    /* near: depth at the centre of the cell; if a step in depth divides the cell, depth of the nearer side. far: depth of the farther side,
-       equal to `near` if there is no step */
+    /* a depth step divides a cell into a nearer and a farther side. near, far: middle of the depth range of the nearer and of
+       the farther side; without a step, both are the middle of the cell's depth range */
     float near, far;
     /* one bit per pixel of the cell, row by row; 1: the pixel is on the nearer side of the cell's depth step */
     uint64_t mask;

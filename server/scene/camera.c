@@ -100,8 +100,8 @@ static void side_add(struct clip_side *side, double x, double z)
     side->low = fmax(side->low, -x + z * side->from);
 }
 
-/* Returns the smallest distance of the camera's eye from the centre of a box at which the box fits into the picture along one
-   axis of the picture. */
+/* Returns how far the camera's eye must at least be from the centre of a box for the box to fit into the picture along one of
+   the picture's axes. */
 static double side_back(const struct clip_side *side)
 {
     return (side->low + side->high) / (side->to - side->from);

@@ -112,8 +112,8 @@ static bool on_resize(struct session *session, const struct message *message, st
     if (session_is_tile(session))
         session_tile_fit(session, &session->tile.place, message->width_px, message->height_px, &session->view, &session->tile.layout);
     session_scope_fit(session, &session->view);
-    /* a view of the plant file is set again after the picture changed its size, because its camera depends on the size if the
-       file states no camera */
+    /* sets the named view again when the picture's size changes: if the view states no camera, its camera is computed from that
+       size */
     if (session->scope.named[0] && session->identity.holder.views[0])
         return session_look(session, session->scope.named, &session->view, error);
     if (message->pixel_ratio > 0)

@@ -8,7 +8,7 @@
 #include "base/thread.h"
 
 /* MAX_QUEUED: maximum number of queued jobs, reached only if the disk hangs. RESULTS: number of newest jobs whose results are
-   kept; enough, because a ticket (settling_ticket) is settled within a second */
+   stored. That is enough, because callers ask for a job's result (settling_ticket) for at most a second. */
 enum { MAX_QUEUED = 64, RESULTS = 1024 };
 
 struct file_writer {

@@ -4,8 +4,8 @@
 
 #include "render/soft/lanes.h"
 
-/* Smallest gap between the two sides of a depth step, as a fraction of the cell's depth range; with a smaller gap the cell is
-   not divided. On a single tilted plane, depths are closer together than that. */
+/* Smallest gap in depth between the two sides of a depth step, as a fraction of the cell's depth range; with a smaller gap the
+   cell is not divided. On a single tilted plane, the depths of a cell are spread evenly, so that no gap is this large. */
 static const float LEAST_GAP = 0.25f;
 
 SOFT_INLINE float least_of_all(lanes x)
@@ -71,8 +71,8 @@ SOFT_INLINE void find_cell(const struct depth_lens *lens, const float *depth, si
     *cell = (struct depth_cell){ middle, middle, 0 };
     if (high <= 0)
         return;
-    /* A step between two surfaces is preferred to a step to the background, because the background has no features that would seem to
-       move. */
+    /* If the cell shows two surfaces and background, divides it at the step between the surfaces rather than at the background:
+       when a client warps the picture, a wrong depth moves the features of a surface visibly, but the background has none. */
     float surface = low > 0 ? low : farthest_surface(depth, pitch_px, high), border = 0.5f * (surface + high);
     bool divided = high - surface > lens->step * border + lens->least_step && divide(depth, pitch_px, surface, border, high, cell);
     if (low <= 0 && !divided)

@@ -129,7 +129,7 @@ SOFT_INLINE lanes sun_tap(const struct soft_light *light, lanes s, lanes t, lane
 /* Elevations above the horizon along a row of pixels, as columns of the backdrop table. They are interpolated linearly within a
    stretch of raster->stretch_px pixels (choose_stretch bounds the error). */
 struct heights {
-    /* elevation above the horizon at the centre of the first of these pixels (a stretch of a row), and its change per pixel */
+    /* first: elevation above the horizon at the centre of the first pixel of a stretch of a row; step: its change per pixel */
     float first, step;
 };
 

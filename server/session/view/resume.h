@@ -24,7 +24,8 @@ struct resumed {
     double pixel_ratio;
     uint64_t called; /* number of the resumed session, which other sessions use to follow it */
     double speed;    /* playback speed, recorded seconds per second, if view.at_us is a past instant */
-    /* session that has the view and is still connected, so that it must be closed now; NULL: the view's connection is lost */
+    /* session that still shows the view, because its connection is not closed yet; the caller must close it now. NULL: the
+       view's connection is lost */
     struct session *live;
 };
 /* Finds the view that a secret resumes. Returns false if no view has this secret, the view has expired, or the session has

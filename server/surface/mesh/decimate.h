@@ -11,11 +11,11 @@ struct decimate_params {
     double within_m;      /* largest displacement of the surface */
     double longest_m;     /* maximum length in metres of an edge that a collapse may create */
 };
-/* Removes points by collapsing each into a neighbour. All triangles at the point must stay in their planes (within
-   params->within_m). The visible and the hidden area of each part must stay the same, so that borders and lines between parts
-   stay in place. hidden[] is rearranged with the triangles. Pieces of coplanar model triangles may be merged: plane[source]
-   receives the lowest index of the model triangles merged with triangle `source`. target[point]: receives the point's new
-   index, or TRIMESH_NONE if the point is removed. */
+/* Removes points by merging each with a neighbour (edge collapse). This is done only if all triangles at the point stay in
+   their planes (within params->within_m), and the visible and the hidden area of each part stay the same, so that borders and
+   lines between parts stay in place. hidden[] is rearranged with the triangles. Pieces of coplanar model triangles may be
+   merged: plane[source] receives the lowest index of the model triangles merged with triangle `source`. target[point]: receives
+   the point's new index, or TRIMESH_NONE if the point is removed. */
 void decimate_mesh(struct trimesh *mesh, char *hidden, const struct decimate_params *params, uint32_t *plane, size_t source_count,
                    uint32_t *target);
 

@@ -7,13 +7,13 @@
 
 enum interior_kind { INTERIOR_NOT, INTERIOR_INSIDE, INTERIOR_ACROSS };
 
-/* Sets hidden[tri] to a value of enum interior_kind. A triangle is interior if its centre is inside a closed part other than
- * its own, as tested by rays in five directions of which four must agree. A triangle on another part's surface (within both
- * parts' reach, parts.h) is interior if it is covered: if the other part is on one of its sides, and its own part on the other.
- * In a thin part, every point is within reach of the surface. There, a triangle that stands across the part is interior too,
- * unless it alone connects visible triangles. In a part that intersects itself or has internal walls, a triangle with the
- * part's inside on both sides is interior. part: by triangle, its part. crossings: points where a part intersects itself.
- * workers may be NULL. Returns whether any triangle is hidden. */
+/* Sets hidden[tri] to a value of enum interior_kind. Three kinds of triangles are interior. First: the triangle's centre is
+   inside a closed part other than its own (four of five test rays must agree). Second: the triangle lies on another part's
+   surface (within both parts' reach, parts.h), with that part on one side and its own part on the other, so it is covered from
+   both sides. In a thin part, every point is within reach of the surface, so a triangle that stands across the part is interior
+   too, unless it alone connects visible triangles. Third: in a part that intersects itself or has internal walls, the triangle
+   has the part's inside on both sides. part: by triangle, its part. crossings: points where a part intersects itself. workers
+   may be NULL. Returns whether any triangle is hidden. */
 bool interior_find(const struct trimesh *mesh, const uint32_t *part, const struct body_parts *parts, const uint32_t *crossings,
                    size_t crossing_count, struct workers *workers, char *hidden);
 /* Decides which triangles marked INTERIOR_ACROSS (standing across a thin part) become visible: groups that connect visible
