@@ -251,7 +251,7 @@ bool child_run(const struct child_params *params, struct text *out, char why[CHI
         snprintf(why, CHILD_WHY_BYTES, "%s", strerror(errno));
     if (child.pid > 0) {
         kill(-child.pid, SIGKILL);
-        kill(child.pid, SIGKILL); /* also kills the child alone, because its process group may not exist yet */
+        kill(child.pid, SIGKILL); /* kills the child itself, too, because its process group may not exist yet */
         wait4(child.pid, &status, 0, &usage);
         kill(-child.pid, SIGKILL); /* again kills the child's process group, to which processes that it started meanwhile belong */
     }

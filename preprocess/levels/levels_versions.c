@@ -32,7 +32,9 @@
 /* versions (simplification steps) with an error below this, relative to the asset's size, keep open borders, so that no hair
  * gaps open between patches */
 #define NEAR 0.01
-#define BEYOND 3.0 /* factor from meshoptimizer's error estimate, a mean over planes, to the probable measured maximum */
+/* meshoptimizer estimates the error as a mean over planes; this factor converts the estimate to the maximum error that will
+   probably be measured */
+#define BEYOND 3.0
 
 static size_t triangles_of(const struct versions *versions)
 {
