@@ -48,7 +48,7 @@ static const char *const schemas[JOURNAL_VERSION] = { schema_1, schema_2 };
     " ORDER BY t DESC, id DESC LIMIT 1) FROM known) AND after <> 'normal' ORDER BY id"
 #define STATES(unit)                                                                                                                       \
     "SELECT tag, kind, active, unacknowledged, latched, aside, value, raised, changed, until, who, reason, " unit " FROM state"
-/* SQL_..._1 are the same queries for a file of version 1, which has no unit column. */
+/* SQL_STATES_1 and other names that end in _1: the same queries for a file of format version 1, which has no unit column. */
 enum {
     SQL_EVENT, SQL_STATE, SQL_NORMAL, SQL_FORGET, SQL_TIME_OF, SQL_HAS_UNIT,
     SQL_STATES, SQL_ROWS, SQL_ROWS_OF, SQL_AT, SQL_STATES_1, SQL_ROWS_1, SQL_ROWS_OF_1, SQL_AT_1, SQL_COUNT

@@ -114,7 +114,7 @@ void update_rule(const struct field_state *state, const struct state_input *inpu
         bool around = state->params.interpolation == INTERPOLATION_FIN;
         float offset = around && !difference && !places ? (float)group->ambient : 0;
         *rule = (struct kernel_value){ .scale = 1, .offset = offset, .low = around ? offset : FLT_MAX, .high = around ? offset : -FLT_MAX };
-        /* values of interpolation gp (Gaussian process) are not clamped: they may lie outside the range of the readings */
+        /* does not clamp values of interpolation gp (Gaussian process): they may lie outside the range of the readings */
         if (state->params.interpolation == INTERPOLATION_GP)
             rule->low = -FLT_MAX, rule->high = FLT_MAX;
         for (size_t m = 0; m < state->weights->member_count; m++) {

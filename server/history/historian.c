@@ -606,7 +606,7 @@ static void end_spooled_lines(struct spool_rows *rows)
 static void spool(struct historian *historian)
 {
     char **places = spool_places(historian->folder);
-    /* the previous run's spooled rows come first, if they could not be written to history */
+    /* puts the rows of the previous run first, if they could not be written to history */
     struct spool_rows *rows = &historian->spooled;
     end_spooled_lines(rows);
     size_t before = rows->kept.count;

@@ -58,7 +58,8 @@ static struct month_file *open_month(struct history_reader *reader, int month, i
         if (reader->files[i] && month_file_month(reader->files[i]) == month) {
             if (month_file_is_there(reader->files[i]))
                 return reader->files[i];
-            /* the month's file was deleted or replaced after it was opened: closes it and opens the current one */
+            /* closes the month's file if it was deleted or replaced after it was opened, and opens the file that now has the
+               name */
             place = &reader->files[i];
         }
     if (place == &reader->files[reader->next])

@@ -114,7 +114,8 @@ static int fit_unit(struct month_file *file, int tag)
     int64_t id = month_find_tag(file, of->name, of->unit, &step, &change);
     if (id != newest) {
         int moved = newest ? set_series_aside(file, of, newest) : 0;
-        /* the tag's earlier series, set aside when the unit changed, can be converted to the present unit: continues it */
+        /* continues the tag's earlier series, which was set aside when the unit changed, because it can be converted to the
+           present unit */
         if (!moved && id)
             moved = rename_series(file, id, of->name);
         file->rollups[tag].loaded = false;

@@ -68,7 +68,8 @@ struct view {
     enum tier tier;
     int selected_asset;  /* outlined; -1: none */
     double light_dir[3]; /* unit vector towards the sun, in the plant frame */
-    bool dark;           /* true: the backdrop is dark; colours of the field are the same on both backdrops */
+    /* true: the backdrop (sky and ground) is dark; the colours of the field are the same on a dark and on a bright backdrop */
+    bool dark;
     enum directions_look directions;
     enum language language; /* language of the texts in the overlay (legend, clock and markers drawn over the picture), if one is drawn */
     bool strip;             /* true: frames get a machine-readable copy of the legend in their lowest rows (legend strip) */

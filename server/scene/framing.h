@@ -9,7 +9,8 @@
 enum side { SIDE_NOW, SIDE_TOP, SIDE_BOTTOM, SIDE_FRONT, SIDE_BACK, SIDE_LEFT, SIDE_RIGHT, SIDE_ISO };
 
 struct framing {
-    int asset, tag;              /* indices of the asset or tag to show; -1: none; both -1: the whole plant */
+    /* asset: index of the asset to show; tag: index of the tag whose sensor to show; -1: none; both -1: the whole plant */
+    int asset, tag;
     enum side side;              /* side from which to look. SIDE_NOW: as the camera looks now, but at a sensor from outside its asset */
     /* rectangle of the picture that the subject (plant, asset or sensor) is to fill; coordinates from -1 to 1 along each axis;
        all zero: the whole picture */

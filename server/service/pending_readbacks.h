@@ -13,7 +13,7 @@ enum { PENDING_READBACKS_MAX = 3 };
 struct pending_readbacks {
     struct pending_readback {
         struct split_view *split;
-        struct request_group group; /* requests of clients that this frame answers */
+        struct request_group group; /* requests of clients that are to be answered with this frame */
         /* reference to the readings of a past instant; NULL: the readings are in `snapshot` */
         const struct historical_snapshot *historical;
         struct snapshot *snapshot;

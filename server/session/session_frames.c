@@ -351,7 +351,7 @@ bool session_wants(const struct session *session, int64_t now_ns, struct frame_r
 {
     *request = (struct frame_request){ .view = session_shown(session), .codec = session->codec.current, .asked_ns = now_ns };
     request->account = session->room.share ? session->room.share->account : 0;
-    /* readings of a past instant never change, so read_ns is 0: no later change can require another request */
+    /* sets read_ns to 0: readings of a past instant never change, so no later change can require another request */
     request->read_ns = request->view.at_us ? 0 : session->context->changed_ns;
     request->view.camera_seq = session->view.camera_seq;
     request->view.params_seq = session->view.params_seq;

@@ -23,7 +23,7 @@ void modbus_take_values(struct modbus_source *modbus, struct read_plan_block *bl
     block->answered = true;
     store_write(modbus->base.store, modbus->samples, block->tag_count, clock_mono_ns(), clock_utc_ns());
     bool repaired = modbus_note_refused(modbus, block, false, "read again");
-    /* the call may rebuild the read plan; after it, the pointer `block` is invalid */
+    /* the call may rebuild the read plan, so the pointer `block` must not be used afterwards */
     modbus_unit_is_up(modbus, modbus_unit_of(modbus, block));
     if (repaired)
         modbus_replan(modbus);

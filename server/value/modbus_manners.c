@@ -87,7 +87,8 @@ static void learn_start(struct modbus_source *modbus)
     bool known = manners->first_wait_ns > 0, repeated = answered_ns - sent_ns < timeout_ns / 2;
     char found[200];
     if (answered_ns - manners->connect_delay_ns < timeout_ns) {
-        /* the first answer of this connection came in time, so an earlier delay had another reason: forgets it */
+        /* forgets the learned delay: the first answer of this connection came in time, so an earlier late answer had another
+           reason */
         manners->first_wait_ns = 0;
         return;
     }

@@ -21,7 +21,7 @@
 enum { CONNECT_S = 5, TIMEOUT_S = 10, PICTURE_BYTES = 8 << 20, HEADER_BYTES = 1024, MIN_RETRY_S = 5, MAX_RETRY_S = 60, REST_MS = 60000 };
 static const int64_t WANTED_NS = 30 * NS_PER_S;
 
-/* why there is no picture of another plant; clients receive the name of the reason, and the log the details */
+/* reasons why there is no picture of another plant; clients receive the reason's name, and the log receives the details */
 enum why { WHY_NONE, WHY_WAITING, WHY_UNREACHABLE, WHY_TLS, WHY_TOKEN, WHY_REFUSED, WHY_BUSY, WHY_SLOW, WHY_LARGE, WHY_NO_PICTURE };
 static const char *const why_names[] = { [WHY_NONE] = "",
                                          [WHY_WAITING] = "waiting",

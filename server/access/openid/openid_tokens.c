@@ -182,7 +182,7 @@ static enum openid_rights refresh(struct openid *openid, struct person *person, 
     return rights;
 }
 
-/* For a user without a refresh token: checks the rights with the access token until it expires. */
+/* Checks the rights of a user without a refresh token with the user's access token, until that token expires. */
 static enum openid_rights ask_again(struct openid *openid, struct person *person, const char **why)
 {
     char *url = openid_endpoint(openid, "userinfo_endpoint");
