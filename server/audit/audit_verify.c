@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Verifies an audit trail: all its lines, their hashes, and PATH.head. */
+/* Verifies an audit trail: the order and hash of every line, and that the trail ends with the line that PATH.head names. */
 #include <dirent.h>
 #include <errno.h>
 #include <inttypes.h>

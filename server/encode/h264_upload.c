@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Converts planar frames to the format that an encoder accepts. */
+/* Converts planar frames (luma and chroma in separate planes) to the pixel format that an H.264 encoder of libavcodec accepts. */
 #include "encode/h264_upload.h"
 
 #include <libavutil/hwcontext.h>

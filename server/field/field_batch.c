@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Updates the fields of many assets in parallel. */
+/* Updates the fields (values interpolated between sensors) of many assets in parallel. */
 #include "base/mem.h"
 #include "field/field_impl.h"
 #include "field/update.h"

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Internals of struct field, shared by the field*.c files. */
+/* Members of struct field, which computes and caches the values interpolated between sensors, and functions that the field*.c
+   files share. Private to them. */
 #ifndef FIELD_FIELD_IMPL_H
 #define FIELD_FIELD_IMPL_H
 #include "field/field.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Loads and checks the TLS certificate, and serves it. */
+/* Loads and checks the TLS certificate, and makes libwebsockets serve it to clients. */
 #include "net/tls.h"
 
 #include <errno.h>

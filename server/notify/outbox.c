@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Decides who is notified of which alarms, and when. */
+/* Decides which recipients are notified of which alarms and when, and queues the notifications. */
 #include "notify/outbox_impl.h"
 
 #include <math.h>

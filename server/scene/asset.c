@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Maps prepared asset files into memory and checks them. */
+/* Maps the asset files that plantcast-prep made into memory, and checks their content. */
 #include "scene/asset.h"
 
 #include <errno.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Keeps pick queries and their answers in two lists under one lock. */
+/* Stores pick queries ("what is at this pixel?") and their answers in two lists under one lock. */
 #include "service/pick_queue.h"
 
 #include <pthread.h>

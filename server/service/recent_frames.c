@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The recent-frame cache: an array of frames, searched by content hash. */
+/* The cache of recently drawn frames: an array that is searched by the hash of what a frame shows. */
 #include "service/recent_frames.h"
 
 #include "base/clock.h"

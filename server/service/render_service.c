@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Accepts requests and hands out frames; render_thread.c draws them. */
+/* Accepts clients' requests for frames and gives them the encoded frames; render_thread.c draws the frames. */
 #include "service/render_service.h"
 
 #include "base/clock.h"

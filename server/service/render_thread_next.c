@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Chooses what the render thread does next. */
+/* Chooses what the render thread does next: which client's request it draws, or whether it draws a step of a frame that takes
+   long. */
 #include "base/clock.h"
 #include "service/render_thread_impl.h"
 

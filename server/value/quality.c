@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Names of the quality codes of readings. */
+/* Names of the OPC UA quality codes that readings have. */
 #include "value/quality.h"
 
 #include <stddef.h>

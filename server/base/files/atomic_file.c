@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes a temporary file in the same folder, then renames it. */
+/* Replaces a file as a whole: writes a temporary file in the same folder, then renames it over the old file, so that readers
+   see the old content or the new one, never a part. */
 #include "base/files/atomic_file.h"
 
 #include <errno.h>

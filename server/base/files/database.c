@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Opens SQLite files, upgrades old versions, handles errors. */
+/* Opens SQLite files, upgrades files that an earlier version of the program wrote, and converts SQLite's errors to -errno. */
 #include "base/files/database.h"
 
 #include <errno.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Counts the log lines that a rate limit suppresses. */
+/* Rate limit for log lines about one repeating state: counts the suppressed lines, and doubles the pause until the next line. */
 #include "base/log/log_pace.h"
 
 #include <stdio.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A growing string, and reading of whole files. */
+/* A growing string (struct text), to which callers append text, quoted if needed, and reading of whole files into memory. */
 #include "base/text/text.h"
 
 #include <errno.h>

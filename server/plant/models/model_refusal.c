@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Formats the text that says why a model is rejected. */
+/* Formats the text that says why a model file is rejected. */
 #include "plant/models/model_refusal.h"
 
 #include <stdarg.h>

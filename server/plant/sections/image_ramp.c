@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads an image and samples the 256 colours of a colour map. */
+/* Makes a colour map of 256 colours from an image of a colour bar: samples the colours along the middle of the image's longer
+   side. */
 #include "plant/sections/image_ramp.h"
 
 #include <errno.h>
@@ -12,7 +13,8 @@
 
 enum { MAX_PX = 4096 };
 
-/* Returns a pixel of the image's middle row or column. lying: true: of the row; false: of the column. place: index of the pixel in it. */
+/* Returns a pixel of the image's middle row (lying true), counted from the left, or of its middle column (lying false), counted
+   from the bottom. place: index of the pixel, from 0. */
 static const uint8_t *pixel_at(const struct image *image, bool lying, uint32_t place)
 {
     uint32_t x = lying ? place : image->width_px / 2, y = lying ? image->height_px / 2 : image->height_px - 1 - place;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads an asset's `properties`: user-defined names and values. */
+/* Reads an asset's key `properties` in the plant file: names and values that engineers define for the asset. */
 #include <string.h>
 
 #include "base/mem.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Resolves references by name to tags: quality tags, tags with directions, heartbeats. */
+/* Looks up the tags that cells of other tags name: quality tags, tags with directions, heartbeats. */
 #include "plant/tags/tag_links.h"
 
 #include <stdlib.h>

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Builds texts about what a session is shown: parameters, leader, instant, camera. */
+/* Builds the messages that tell a client what its session shows: parameters, the user whose view it follows, the instant, the
+   camera. */
 #include "session/reply/reply_impl.h"
 
 #include "base/text/json_text.h"

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Builds one `tags` message for many sessions that need the same text. */
+/* Caches the last `tags` message (changed readings), so that its text is built once for all sessions that need the same
+   changes. */
 #include "session/reply/tag_text_cache.h"
 
 #include <string.h>

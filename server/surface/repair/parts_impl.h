@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Declarations shared by the files that find parts and their orientation (parts*.c). */
+/* Declarations shared by the files parts*.c, which find the parts of a surface and orient their triangles outwards. */
 #ifndef SURFACE_REPAIR_PARTS_IMPL_H
 #define SURFACE_REPAIR_PARTS_IMPL_H
 #include "surface/mesh/tri_edges.h"
