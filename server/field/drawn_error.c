@@ -242,8 +242,10 @@ static bool amplifies_distances(const struct weights *weights)
     return weights->distance != DISTANCE_EUCLIDEAN && weights->interpolation == INTERPOLATION_SHEPARD && weights->power >= AMPLIFYING_POWER;
 }
 
-/* If each weight is multiplied by a factor between `least` and `most`, the weighted mean v of readings changes by at most the
-   sum of weight times |factor - (least + most) / 2| times |reading - v|, divided by the sum of the new weights. */
+/* Returns a bound on the error of values due to errors of distances: a value v, which is the weighted mean of readings, changes
+   by at most the result times the weighted mean of |reading - v|. 0: the errors are negligible. Reason: errors of distances
+   multiply each weight by some factor between `least` and `most`, whose difference from their mean is at most (most - least) /
+   2, and the sum of weights by at least `least`. */
 double drawn_error_of_distances(const struct weights *weights)
 {
     if (!amplifies_distances(weights))

@@ -421,8 +421,9 @@ static bool was_end_of_line(struct import_series *series, int64_t t_us)
            is_end_of_line(&series->before.at[series->next]);
 }
 
-/* Records the tag's pending sample. If the next sample, at next_us, follows only after a gap, also records a point without a
-   value, so that the sample's value does not seem to continue through the gap. next_us INT64_MAX: there is no next sample. */
+/* Records the tag's pending sample. If the time from there to the next sample, at next_us, is a gap, also records a point
+   without a value just after the sample, so that the sample's value does not seem to last through the gap. next_us INT64_MAX:
+   there is no next sample. */
 static void record_pending(struct filling *filling, int tag, int64_t next_us)
 {
     struct import_series *series = &filling->series[tag];

@@ -108,8 +108,8 @@ static const char *const sql[SQL_COUNT] = {
     [SQL_UPDATE_SECOND] = "UPDATE second SET stamp = ?2, data = ?3 WHERE n = ?1",
     [SQL_ADD_OUTBOX] = "INSERT INTO outbox(tag, t, v, q) VALUES(?, ?, ?, ?)",
     [SQL_HAS_OUTBOX] = "SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = 'outbox'",
-    /* the table `outbox` (points to be sent to PostgreSQL) has no index on time, so points are deleted in order of insertion,
-       up to the first one that is recent enough */
+    /* deletes points from the table `outbox` (points to be sent to PostgreSQL) in order of insertion, up to the first one that
+       is recent enough to stay: the table has no index on time */
     [SQL_CUT_OUTBOX] = "DELETE FROM outbox WHERE seq < coalesce((SELECT seq FROM outbox WHERE t >= ?1 ORDER BY seq LIMIT 1),"
                        " (SELECT max(seq) + 1 FROM outbox))",
     [SQL_SPAN] = "SELECT min(a), max(b) FROM (SELECT min(t) AS a, max(t) AS b FROM recent UNION ALL SELECT min(t), max(t) FROM held"

@@ -11,7 +11,8 @@
 static const int64_t SEND_NS = 2 * NS_PER_S; /* time limit for the standby core to receive all state of this leading core */
 static const int64_t TAKE_NS = NS_PER_S;     /* time limit for the standby core to take the leadership lease */
 
-/* Returns the next step of the handover of the lead to the standby core, or `step` itself while that step is not finished. */
+/* Carries out the present step of the handover of the lead to the standby core. Returns the next step once that is finished,
+   else `step` itself. */
 static enum hand_over_step next_step(struct net *net, enum hand_over_step step)
 {
     struct server_context *server = &net->server;

@@ -121,11 +121,13 @@ struct server_context {
         struct openid *openid;           /* service for signing in with OpenID Connect; NULL: off */
         struct login_throttle *throttle;
         char *notice;      /* text that the page shows before users sign in; NULL: none */
-        /* number of tokens left unchecked because their address had sent too many wrong ones, and not yet listed in the audit trail */
+        /* number of tokens that were left unchecked, because their address had sent too many wrong ones, since the audit trail
+           last got a line with this number */
         int64_t held;
         /* monotonic time when the audit trail last got a line about tokens left unchecked because their address is throttled */
         int64_t held_ns;
-        /* number of the identity provider's answers that failed or belonged to no sign-in, and are not yet listed in the audit trail */
+        /* number of the identity provider's answers that failed or belonged to no sign-in, since the audit trail last got a
+           line with this number */
         int64_t unasked;
         int64_t looked_ns; /* monotonic time when the files of tokens and certificate were last checked */
     } logins;

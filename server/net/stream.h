@@ -77,8 +77,8 @@ void tiles_pump(struct server_context *server, const struct stream *stream);
 /* Chooses the tile (display with a part of one picture) that leads its wall, and informs all tiles. Call it when tiles
    connected, disconnected or were dropped. leaving: a stream that is being closed, or NULL. */
 void tiles_gather(struct server_context *server, const char *wall, const struct stream *leaving);
-/* Drops tiles (displays that together show one picture) that delay the others of their wall, and readmits them once they keep
-   up. Call it every tick. */
+/* Drops tiles (displays that together show one picture of a wall) that delay the wall's other tiles, and readmits them once
+   they keep up. Call it in each run of the event loop's periodic work. */
 void tiles_on_tick(struct server_context *server);
 
 /* --- stream_follow.c: sessions that are shown another session's view --- */
@@ -88,12 +88,13 @@ void follow_resolve(struct server_context *server, struct stream *stream);
 /* Tells all followers of `leader` that the leader's view changed. Returns false if there are none. */
 bool follow_spread(struct server_context *server, const struct stream *leader);
 /* Chooses one step of the quality ladder (picture quality and size) for all viewers of one view, so that a frame is encoded
-   once for all. Call it every tick. */
+   once for all of these viewers. Call it in each run of the event loop's periodic work. */
 void follow_share_steps(struct server_context *server);
 /* Call it when a stream is being closed. If another connection has resumed the session's view, its followers then follow the
    resuming session; otherwise they follow nobody. */
 void follow_forget(struct server_context *server, const struct stream *leader);
-/* Sends each session that others follow (leader) the list of its followers if it changed. Call it every tick. */
+/* Sends each leader (session whose view other sessions follow) the list of its followers if the list changed. Call it in each
+   run of the event loop's periodic work. */
 void follow_tell(struct server_context *server, int64_t now_ns);
 
 #endif

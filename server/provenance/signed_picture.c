@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes the statement of a picture (the data that the picture was drawn from) and signs the statement's exact bytes, so that a verifier
-   need not reproduce the formatting. */
+/* Writes the statement of a picture, which lists the data that the picture was drawn from. Signs the statement's exact bytes,
+   so that a verifier need not reproduce its formatting. */
 #include "provenance/signed_picture.h"
 
 #include <inttypes.h>

@@ -51,8 +51,9 @@ struct scene {
     size_t extreme_count;    /* number of points in extremes_m; 0: the outermost points are not known */
 };
 
-/* Chooses the box that near and far planes must enclose: the box of everything. If a stray piece is so far away that the near
- * plane would then cut into the main part, chooses the main part's box instead. */
+/* Chooses the box that the camera's near and far planes must enclose: normally the box of everything. If a stray piece (far
+   from the rest of the plant) would move the near plane so far that it cuts into the plant's main part, chooses the main part's
+   box instead. */
 void scene_depth_box(const struct scene *scene, const double eye_m[3], double min_m[3], double max_m[3]);
 /* Returns whether the asset's placement mirrors it and so reverses the winding of its triangles. */
 bool scene_asset_mirrored(const struct scene_asset *asset);

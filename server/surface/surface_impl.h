@@ -7,7 +7,9 @@
 #include "surface/surface.h"
 #include "surface/geodesic/propagation.h"
 
-struct stray { /* stray vertex: a model vertex all of whose triangles have no area; its distances are those of the nearest surface point */
+/* stray vertex: a model vertex that only belongs to triangles without an area. The surface has no point for it, so it gets the
+   distances of the nearest surface point */
+struct stray {
     uint32_t vertex, points[3];
     double weights[3];
 };

@@ -57,8 +57,8 @@ static void read_block(struct modbus_source *modbus, size_t index)
     modbus_manners_after(modbus);
 }
 
-/* Returns the time from which a block (tags read by one request) may be read. It is the latest of the block's due time, the
-   retry time of its unit while that is down, and the time of the next connection attempt while the link is closed. */
+/* Returns the time from which a block (tags read by one request) may be read: the block's due time or, if later, the retry time
+   of its unit (while the unit is down) or the time of the next connection attempt (while the link is closed). */
 static int64_t ready_ns(const struct modbus_source *modbus, const struct read_plan_block *block)
 {
     const struct modbus_unit *unit = modbus_unit_of(modbus, block);

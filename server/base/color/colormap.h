@@ -22,8 +22,8 @@ struct colormap {
 
 enum { COLORMAPS_BUILT_IN = 6 };
 extern const struct colormap colormaps_built_in[COLORMAPS_BUILT_IN]; /* the built-in maps; the first one is the default */
-/* The colour map of the operator's view, which shows how near a reading is to its alarm limits, as a position from -3 (far
-   below the low limits) to 3 (far above the high ones); field/limits.h computes the position. */
+/* The colour map of the operator's view, which shows how near a reading is to its tag's alarm limits. The position of a reading
+   runs from -3 (far below the low limits) to 3 (far above the high ones); field/limits.h computes it. */
 extern const struct colormap colormap_operator;
 
 /* Computes `shading` and `safe` from the map's colours, and chooses the out-of-range colours. Takes a few milliseconds. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Clips those triangles of a part (up to 256 neighbouring triangles, parts.h) that may cross the near plane, the guard band (a
-   border around the frame) or a section plane. */
+/* Clips the triangles of a part (up to 256 neighbouring triangles, parts.h) that may cross a clipping plane: the near plane,
+   the guard band (a border around the frame) or a section plane. */
 #include <math.h>
 
 #include "render/soft/clip.h"

@@ -16,8 +16,8 @@ int tile_layout_height(const struct tile_layout *layout)
     return layout->rows * layout->height_px + (layout->rows - 1) * layout->gap_px[1] + 2 * layout->margin_px[1];
 }
 
-/* Scales the width or height of a tile (one display's part of the picture) to an even number of pixels, because encoders with
-   chroma subsampling would blend an odd column with the next tile's pixels. */
+/* Scales the width or height of a tile (one display's part of the picture) and rounds it to an even number of pixels. With an
+   odd number, encoders with chroma subsampling would blend the last column or row with the next tile's pixels. */
 static int scaled(int px, double scale)
 {
     int less = (int)(px * scale) & ~1;
