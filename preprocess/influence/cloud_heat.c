@@ -185,9 +185,10 @@ static double find_pieces(struct cloud_heat *cloud)
     return most * CLOUD_REACH * cloud->spacing_m;
 }
 
-/* Computes two axes of the tangent plane at a sample point, perpendicular to the direction in which the neighbouring points
- * spread least. If the smallest eigenvalue is near 0, the covariance's largest cofactor vector approximates that direction;
- * inverse iteration refines it. */
+/* Computes two axes of the tangent plane at a sample point. The plane's normal is the direction in which the neighbouring
+   points spread least: the eigenvector of their covariance matrix with the smallest eigenvalue. It is found by inverse
+   iteration, with the matrix of cofactors in place of the inverse. The iteration starts at the longest cofactor vector. If the
+   smallest eigenvalue is near 0, this vector is already almost the normal. */
 static void find_plane(struct cloud_heat *cloud, size_t point)
 {
     double c[3][3] = { { 0 } }, normal[3] = { 0, 0, 1 }, trace = 0;

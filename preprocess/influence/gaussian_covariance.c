@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes the prior covariance as a derivative with respect to k^2 (gaussian_covariance.h), by a central difference between
- * log k^2 - STEP and log k^2 + STEP. */
+/* Computes the covariance D' A^-1 C A^-1 D (letters: gaussian_covariance.h) as the derivative of -D' A^-1 D with respect to
+   k^2. Computes D' A^-1 D for k^2 exp(-STEP) and for k^2 exp(STEP), and divides their difference by that of the two squares
+   (central difference). */
 #include "preprocess/influence/gaussian_covariance.h"
 
 #include <math.h>

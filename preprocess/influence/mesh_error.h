@@ -15,8 +15,9 @@ struct mesh_error;
 struct mesh_error *mesh_error_create(const struct influence_mesh *mesh);
 /* Frees the error sums and sets *error to NULL. *error may be NULL. */
 void mesh_error_destroy(struct mesh_error **error);
-/* Adds the weights ("shares") of `width` sensors, at most BEND_WIDTH, to the error sums. at_points: `stride` numbers per mesh
- * point, of which the first `width` are weights. Any number of threads may call at the same time. */
+/* Computes the flux imbalance at each mesh edge for `width` sensors, at most BEND_WIDTH, and adds it to the error sums.
+   at_points: the sensors' interpolation weights ("shares"). Each mesh point has `stride` numbers there, of which the first
+   `width` are weights, one per sensor. Any number of threads may call at the same time. */
 void mesh_error_add(struct mesh_error *error, const float *at_points, size_t stride, size_t width);
 /* Writes, by mesh point, the largest discretisation error in the adjacent triangles, for the worst possible readings, as a
  * fraction of the spread of readings. Resets the sums to zero. */

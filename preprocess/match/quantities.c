@@ -91,8 +91,10 @@ static bool is_tuning(const struct export_tag *tag, const struct isa_name *isa, 
     return (unit && !strcmp(unit, "time")) || (kind < 0 && !described);
 }
 
-/* Determines the quantity that a tag measures, such as "Temperature"; "": it is a state or setting, or unknown. Uses the tag's
- * unit first, then its description, words of its name, and its letters, none of which may contradict the unit. */
+/* Writes the name of the quantity that a tag measures, such as "Temperature", to `name`. Looks for a quantity in the tag's
+   description, then in the last part of its name, then in its ISA-5.1 letters (T in TI-101), and takes the first that can be
+   measured in the tag's unit. If there is none, uses the default quantity of the unit, the kind of unit, or the unit itself.
+   "": the tag is a state or setting, not a number, or has neither such words nor a unit. */
 static void name_of(const struct export_tag *tag, char name[NAME_BYTES])
 {
     struct isa_name isa;

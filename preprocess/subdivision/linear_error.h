@@ -60,12 +60,12 @@ void linear_error_norms(const struct linear_error *linear, const float point_m[3
  * with Algorithm 1. Does not write the changes per metre. */
 void linear_error_weights_again(const struct linear_error *linear, const float point_m[3], const float *geodesic_m,
                                 const struct interp_norm *norms, float *interp);
-/* Computes, from a sample's normalisations, the distance to the nearest point where a group's data ends, because all its
-   sensors are farther away than the group's reach (maximum distance of influence). Returns a lower bound in metres. The
-   interpolated value may peak there, so edges near such a point must be short. */
+/* Computes, from what linear_error_norms() wrote for a point, the distance to the nearest point where a group's data ends,
+   because all its sensors are farther away than the group's reach (maximum distance of influence). Returns a lower bound in
+   metres. The interpolated value may peak there, so edges near such a point must be short. */
 double linear_error_rim_of(const struct linear_error *linear, const struct interp_norm *norms);
-/* Returns, from a sample's normalisations, the shorter of two distances in metres: straight to the nearest sensor, and to the
- * nearest point where a group's data ends. */
+/* Returns, from what linear_error_norms() wrote for a point, the smaller of two distances in metres: the straight line from the
+   point to the nearest sensor, and the bound that linear_error_rim_of() returns. */
 double linear_error_nearest_of(const struct linear_error *linear, const struct interp_norm *norms);
 /* Return the interpolation error at a point whose sample is `between` or `inside`, as a share of the range.
    linear_error_on_edge() compares it with the linear interpolation at fraction t between the samples of the edge's ends;

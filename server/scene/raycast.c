@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Intersects rays with boxes of assets, boxes of clusters, and triangles, in double precision and in the file's coordinates. */
+/* Intersects rays with the boxes of assets (in plant coordinates), and with the boxes of clusters and the triangles (in the
+   coordinates of the asset's file). Computes in double precision. */
 #include "scene/raycast.h"
 
 #include <math.h>
@@ -159,7 +160,9 @@ static double brought_back(const struct ray *ray, const struct scene_asset *asse
     return ray->parallel_m > 0 ? t + forward * ray->parallel_m : t * (1 + forward);
 }
 
-/* Transforms the ray to the file's coordinates. Returns false if it misses the asset. */
+/* Prepares `search` for one asset: transforms the ray from plant coordinates to the coordinates of the asset's file. low,
+   limit: range of the ray's parameter t in which hits count. Returns false if the ray misses the asset's bounding box in this
+   range, or if the placement cannot be inverted. */
 static bool aim_at(struct raycast_search *search, const struct scene_asset *asset, const struct ray *ray, double low, double limit)
 {
     double file_from_plant[16], ahead[3], enter = low, leave = limit;

@@ -20,8 +20,9 @@ static const int64_t TOLERANCE_NS = 2 * NS_PER_S;
 /* time limit in nanoseconds for the first answer on a connection, if the previous connection got no answer at all; twice
    this time after two or more such connections */
 static const int64_t FIRST_ANSWER_TIMEOUT_NS = 3 * NS_PER_S;
-/* First delay in nanoseconds, between connecting and the first request, that the source tries for RTU over TCP. It waits
-   instead of repeating the request, because these frames have no transaction numbers that tell answers apart. */
+/* Some RTU-over-TCP devices ignore requests sent too soon after connecting. After each connection without an answer, the delay
+   between connecting and the first request is doubled, and this time is added (nanoseconds). Repeating the request instead
+   would not work: RTU frames have no transaction numbers, so a late answer could be taken for that to another request. */
 static const int64_t RTU_DELAY_NS = 500 * NS_PER_MS;
 /* time limit in nanoseconds for the answer of a unit (slave address) that is up, if another unit behind the same gateway has
    just timed out */

@@ -51,8 +51,9 @@ after(async () => {
     await plant?.destroy();
 });
 
-// Opens the session that leads the wall. Its camera faces the row of boxes, and client.tell(number) hides the boxes whose
-// digits are 0 or 1 in Gray code.
+// Opens the session that leads the wall. Its camera faces the row of boxes, one box per binary digit in each tile.
+// client.tell(number) shows the number in Gray code: it hides the boxes of the digits that are 1, and shows those of the digits
+// that are 0.
 async function driver() {
     const client = await PlainClient.open(plant.port);
     await client.hello({ width: WIDTH, height: HEIGHT, codecs: ['jpeg'], tile: { wall: 'wall', display: 1 } });

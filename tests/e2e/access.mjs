@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Access control: TLS; tokens, their roles and every way to send one; revocation; proxies, host names, pages of other sites;
-// and a user who is asked for a token.
+// Tests the access control of a running daemon: TLS, tokens with roles, every way to send a token, and revocation. Foreign host
+// names and pages of other sites must be refused, also behind a proxy. The page must ask users for a token.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { chmodSync, copyFileSync, existsSync, readFileSync, unlinkSync, writeFileSync } from 'node:fs';

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// IFC files imported by `plantcast import`: the spatial tree, names, properties, openings, and broken files.
+// Tests `plantcast import` of IFC files: the spatial tree, names, properties, shapes and openings are imported correctly, and
+// broken files are read or refused in one line.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { existsSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// OBJ, STL, PLY, FBX, COLLADA and 3DS imported by `plantcast import`: names, units, axes, and broken files.
+// Tests `plantcast import` of OBJ, STL, PLY, FBX, COLLADA, 3DS and glTF files. Names, sizes, units and up axis must be right,
+// shapes that are not read must be reported, and broken files must be read or refused in one line.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { once } from 'node:events';

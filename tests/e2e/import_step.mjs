@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// STEP and IGES imported by `plantcast import`: assemblies, names, colours, units, and broken files.
+// Tests `plantcast import` of STEP and IGES files: assemblies, names, sizes and colours are imported correctly, and broken
+// files are refused in one line.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { existsSync, readFileSync, rmSync, writeFileSync } from 'node:fs';

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sources of type mqtt, tested with Debian's broker mosquitto: numbers and JSON, timestamps and qualities in payloads, retained
-// values, invalid payloads, and a broker that is killed, frozen and restarted.
+// Tests sources of type mqtt with Debian's broker mosquitto. Numbers and JSON must arrive with their true age and quality, and
+// invalid payloads must be refused. All tags must be Bad while the broker is down, and recover afterwards.
 import assert from 'node:assert/strict';
 import { createServer } from 'node:net';
 import packets from 'mqtt-packet';

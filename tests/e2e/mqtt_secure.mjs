@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Brokers with access control: TLS with certificates on both sides, users with passwords, forbidden topics; and the last will.
+// Tests MQTT brokers with access control: TLS with certificates on both sides, users with passwords, and topics that a user may
+// not read. Also tests the last will, which the broker publishes if the daemon is killed.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Alarm notifications: e-mail over TLS, webhook and Alertmanager, with all servers on loopback; floods, outages, kills.
+// Tests alarm notifications by e-mail over TLS, webhook and Alertmanager, with all servers on loopback. An alarm flood makes a
+// single message, failed deliveries are retried, and a kill must not make the daemon send an e-mail twice.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* GL contexts, programs and framebuffers, which every render pass uses. */
+/* Tests GL contexts, shader programs and framebuffers, which every render pass uses: how a GPU is selected, which errors are
+   reported, and that pixels are read back correctly. */
 #include "tests/support/test.h"
 #include <sys/wait.h>
 #include <unistd.h>

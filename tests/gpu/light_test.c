@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Lighting that is selected while others watch: baked in small steps, within a memory limit, shown when ready. */
+/* Tests lighting that one session selects while other sessions are served: it is computed (baked) in small steps within a
+   memory limit, and shown when it is ready. */
 #include "tests/support/test.h"
 #include <unistd.h>
 

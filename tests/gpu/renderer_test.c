@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Data that accompany a frame (content hash, markers, ages); culling; lights; difficult views. */
+/* Tests drawn frames. The content hash must change with what is visible, but not with times and frame numbers; markers and the
+   age of readings must be right; what is out of sight must not be drawn. Also tests the choice of light, many frame sizes, and
+   drawing in small steps. */
 #include "tests/support/test.h"
 
 #include "render/memory.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Visibility: hidden, isolated, ghosted and clipped assets; their colours, markers and content hashes; and orthographic
-   cameras. All tests run twice: drawn in software as for a session without a GPU (which leaves some views to GL, and these must
-   match), then drawn by GL only. */
+/* Tests views with hidden, isolated, ghosted and clipped assets (which pixels and markers are drawn, and when the content hash
+   changes), and orthographic cameras. All tests run twice: drawn in software as for a session without a GPU (which leaves some
+   views to GL, and these must match), then drawn by GL only. */
 #include "tests/support/test.h"
 
 #include "render/pick/pick.h"

@@ -20,7 +20,7 @@ void cad_random_start(struct cad_random *random);
 double cad_random(struct cad_random *random);     /* returns a random number from 0 (included) to 1 (excluded) */
 
 void cad_finish(struct cad *cad);
-struct cad *test_cad(void); /* returns an empty shape that belongs to the test (tests/support/owned.h) */
+struct cad *test_cad(void); /* returns an empty shape, which is freed automatically after the test (tests/support/owned.h) */
 
 /* Adds a plate divided into across x up cells, each of two triangles with a random diagonal. Inner vertices are moved randomly
    by up to jitter / 2 times the size of a cell. */

@@ -19,8 +19,8 @@ int gltf_case_tear_down(void **state);
 void gltf_case_read(struct gltf_case *c, const char *path);
 /* writes the bytes to a file in the folder and reads it */
 void gltf_case_load(struct gltf_case *c, const char *name, const void *bytes, size_t size);
-/* Cuts the asset of these nodes (NULL: all) from the last model. Returns its geometry, which belongs to the test; fails the
-   test if there is none. */
+/* Cuts the asset of these nodes (NULL: all) from the last model. Returns its geometry, which is freed automatically after the
+   test; fails the test if there is none. */
 const struct geometry *gltf_case_cut(const struct gltf_case *c, const char *nodes, double unit_m, enum axis up);
 /* Writes a vector at right angles to a triangle, towards the side from which its corners run anticlockwise. */
 void gltf_case_face_normal(const struct geometry *g, uint32_t triangle, double out[3]);

@@ -14,7 +14,7 @@ struct wavy_sheet {
     uint32_t *indices;
 };
 
-struct wavy_sheet sheet_create(uint32_t across, uint32_t up); /* The arrays belong to the test. */
+struct wavy_sheet sheet_create(uint32_t across, uint32_t up); /* The arrays are freed automatically after the test. */
 
 enum { SEED_COUNT = 19 };
 

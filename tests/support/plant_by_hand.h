@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A plant made in a test, without files. It belongs to the test (tests/support/owned.h). */
+/* A plant made in a test, without files. It is freed automatically after the test (tests/support/owned.h). */
 #ifndef TESTS_PLANT_BY_HAND_H
 #define TESTS_PLANT_BY_HAND_H
 #include "plant/plant.h"

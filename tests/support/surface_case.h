@@ -19,7 +19,8 @@ double between(double low, double high);
 /* Skips the test under a sanitizer: the solver would take minutes and is not the code under test. */
 void skip_if_watched(void);
 
-/* Returns the surface of the shape with default parameters; it belongs to the test. Fails the test if there is none. */
+/* Returns the surface of the shape, prepared with default parameters, and frees it automatically after the test. Fails the test
+   if the surface cannot be prepared. */
 struct surface *surface_of(const struct cad *cad);
 
 /* Returns the interpolated value at a vertex for these readings, one per sensor. */

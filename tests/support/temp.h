@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Files for one test, in its own folder under TMPDIR. Folders and returned paths belong to the test (tests/support/owned.h).
-   Aborts if a file cannot be created. Call from any thread. */
+/* Files for one test, in its own folder under TMPDIR. After the test, the folders are removed and the returned paths are freed
+   automatically (tests/support/owned.h). Aborts if a file cannot be created. Call from any thread. */
 #ifndef TESTS_TEMP_H
 #define TESTS_TEMP_H
 #include <stddef.h>

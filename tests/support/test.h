@@ -80,7 +80,8 @@ int test_end(CMFixtureFunction tear_down, void **state);
 /* Runs the tests of this program and prints TAP. Returns the number of failures. name: of the group, or NULL for the program's
    name. A program without main() gets one that calls this with NULL. */
 int tests_run(const char *name);
-/* Optional: if a program without main() defines this function, its main() calls it instead of tests_run(). */
+/* A test program may define this function instead of main(). The main() of test_main.c then calls it in place of
+   tests_run(NULL), and its result is the program's exit status. */
 int tests_main(void);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Access control: which role may send which message, on which addresses a daemon may listen, login names, page origins and proxy
-   headers. */
+/* Tests the rules of access control: which role may send which message, on which addresses a daemon may listen, which host
+   names and page origins are accepted, and which proxies may state a client's address. */
 #include "access/access.h"
 
 #include "tests/support/test.h"

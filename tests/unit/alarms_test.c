@@ -43,7 +43,7 @@ static void stage_destroy(void *resource)
     mem_free(s);
 }
 
-/* Returns a stage that belongs to the test, with a plant but no alarms yet. */
+/* Returns a stage with a plant but no alarms yet. The stage is freed automatically after the test. */
 static struct stage *stage_with_plant(enum alarm_mode mode)
 {
     static const double tt[4] = { 0, 10, 80, 90 }, pt[4] = { NAN, NAN, 5, NAN }, none[4] = { NAN, NAN, NAN, NAN };

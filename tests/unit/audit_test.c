@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The audit trail: its hash chain, detection of manipulated files, rotation, a full disk, and syslog messages. */
+/* Tests the audit trail: its hash chain must reveal every changed, removed or moved line, also after a restart and a rotation.
+   A full disk must be reported, and syslog must get well-formed messages. */
 #include "tests/support/test.h"
 #include <sys/resource.h>
 #include <signal.h>

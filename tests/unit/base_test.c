@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Tests of text, files, diagnostics, memory, counters and the log. */
+/* Tests basic functions of server/base: texts, reading and replacing files, memory, the order of diagnostics, counters for
+   /metrics, and repeated log lines. */
 #include "tests/support/test.h"
 #include <errno.h>
 #include <unistd.h>

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Child processes: their output, how they end, and what their confinement forbids. */
+/* Tests programs that are run as child processes. A crash, a hang or endless output must be reported, a signal must end them,
+   and their confinement must forbid network access and limit memory. */
 #include "tests/support/test.h"
 #include <errno.h>
 #include <fcntl.h>

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Whether the system clock is synchronised, from what the kernel reports (adjtimex), as chrony and other daemons set it. */
+/* Tests how the answer of adjtimex(2) is interpreted: whether a time service such as chrony keeps the system clock
+   synchronised, the clock's maximum error, and leap seconds. */
 #include "base/system/clock_state.h"
 
 #include "tests/support/test.h"

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which bodies are closed. */
+/* Tests which bodies of a model count as closed: those without holes whose triangles all face the same way. Gaps from rounding
+   are permitted; bodies of glass never count. */
 #include "scene/closed_bodies.h"
 
 #include "tests/support/test.h"

@@ -29,7 +29,7 @@ struct encode_streams_fixture {
     enum wire_codec codec;
 };
 
-struct chain_head { /* newest decoder state of a stream, common to all its clients */
+struct chain_head { /* simulated encoder of one stream (stream->work); state: what a decoder holds after the stream's newest packet */
     uint64_t state;
 };
 

@@ -157,7 +157,7 @@ static void rig_destroy(void *resource)
     mem_free(rig);
 }
 
-/* Returns a rig that belongs to the test. Takes the plant over. */
+/* Returns a rig, which takes ownership of the plant. Both are freed automatically after the test. */
 static struct field_rig *rig_create(struct synthetic *plant)
 {
     struct field_rig *rig = mem_new(sizeof(*rig));

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Log lines in each format, and the datagrams to a service manager (sd_notify). */
+/* Tests the log's formats: journal entries, lines with a priority, and JSON lines. Also tests the datagrams to a service
+   manager (sd_notify). */
 #include "base/log/log.h"
 
 #include "tests/support/test.h"

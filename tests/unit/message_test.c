@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Messages of clients: valid and invalid examples, changes of parameters, the query string of snapshots, and randomly damaged
-   text. */
+/* Tests how the server parses messages of clients and the query strings of snapshots: the fields of valid ones are read
+   correctly, and invalid or randomly damaged ones are refused. */
 #include "message/message_parse.h"
 
 #include "tests/support/test.h"

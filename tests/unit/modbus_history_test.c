@@ -153,7 +153,8 @@ static void check_history(const struct modbus_replay *r, struct history_reader *
     history_series_finish(&series);
 }
 
-/* Keeps the device silent until the store has lost every tag. */
+/* Lets the device answer no requests until no mapped tag in the store has a good reading. Then it answers again. The test fails
+   if a tag still has a good reading after 30 s. */
 static void outage(struct modbus_replay *r, struct store *store)
 {
     struct snapshot *snapshot = test_snapshot(r->plant->tag_count);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The Modbus source on the wire: TCP, and RTU frames over a socket and over a serial line; several hosts of one device; limits
-   of devices; wrong answers. */
+/* Tests the Modbus source with a simulated device on TCP, on a serial line, and with RTU frames over TCP. No value may come
+   from a late or wrong answer. A second host must replace a failed one, and requests must respect the device's limits. */
 #include "tests/support/test.h"
 
 #include "base/clock.h"

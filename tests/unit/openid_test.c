@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* ID tokens: which are accepted and which are refused; pending logins; and the file of --openid. */
+/* Tests sign-in with OpenID Connect: which ID tokens are accepted and which are refused, how pending logins are matched to
+   answers, and which contents of the --openid file are errors. */
 #include "tests/support/test.h"
 #include <unistd.h>
 #include <cjose/cjose.h>

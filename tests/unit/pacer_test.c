@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Pacing: the window of frames in flight; acknowledgements in order, out of order and for frames that were never sent; and a
-   simulated network. */
+/* Tests pacing, which decides when a client gets its next frame and in what quality. It limits the number of frames that the
+   client has not acknowledged, and must adapt to simulated slow networks and slow decoders. */
 #include "session/pacing/pacer.h"
 
 #include "tests/support/test.h"

@@ -21,7 +21,7 @@ static void release_plant(void *resource)
     plant_destroy(&plant);
 }
 
-/* Returns a plant that belongs to the test. */
+/* Loads a plant from the text of a plant file and of a tag list. The plant is freed automatically after the test. */
 static struct plant *load(struct plant_case *c, const char *yaml, const char *tags)
 {
     plant_case_load(c, yaml, tags);

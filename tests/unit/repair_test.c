@@ -38,7 +38,8 @@ static bool sheets_share(const struct trimesh *mesh)
 }
 
 /* The lower sheet has a crack along y, with its left side at x = 0. In the upper sheet two cracks cross, and two of the four
-   corners at the crossing touch the lower crack's left side. Each sheet must be closed by itself. */
+   corners at the crossing touch the lower crack's left side. The repair must close each sheet's cracks without joining a point
+   of one sheet to a point of the other. */
 TEST(a_gap_is_not_set_into_one_that_it_runs_over)
 {
     static const float corners[QUADS][8] = {

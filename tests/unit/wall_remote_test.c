@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Remote control of walls: each pane holds one command, the newest, which survives a restart; pointers; and displays and panes
-   that the plant file lacks. */
+/* Tests the remote control of walls. A pane has only one command, the newest, which survives a restart. A position to which a
+   user points is reported once. A display or pane that the plant file lacks is refused; stored commands for it are not listed. */
 #include "tests/support/test.h"
 
 #include <jansson.h>

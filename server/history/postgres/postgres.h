@@ -59,9 +59,9 @@ int64_t postgres_sent_age_ns(struct postgres *postgres);
 /* Replaces a gap in the files with the points that another daemon recorded between two times, once that daemon has sent them to
    the database. from_us 0: from the last point in the files. Call from any thread. */
 void postgres_fill(struct postgres *postgres, int64_t from_us, int64_t to_us);
-/* Sends pending points for at most two seconds, and ends the thread. *owed receives the time spans whose points must still be
-   read from the database; owed NULL: not needed. Accepts a pointer to NULL, and then leaves *owed unchanged. Sets *postgres to
-   NULL. */
+/* Sends the points that still wait for the database, for at most two seconds, then ends the PostgreSQL thread. *owed receives
+   the time spans whose points must still be read from the database; owed may be NULL. Sets *postgres to NULL. If *postgres is
+   NULL already, does nothing and leaves *owed unchanged. */
 void postgres_stop(struct postgres **postgres, struct postgres_owed *owed);
 
 #endif

@@ -34,8 +34,9 @@ bool postgres_restore_end_span(struct postgres_tables *tables, int64_t from_us, 
 bool postgres_restore_span(struct postgres_restore *restore, struct postgres_tables *tables, int64_t from_us, int64_t to_us,
                            int64_t *points, char why[POSTGRES_WHY_BYTES]);
 /* Restores one more month from the database, and sets *points to the number of its points. Returns false if the server fails,
-   or the files cannot be written (logged, reason in `why`). The first call ends earlier recordings in the database with points
-   without a value; make it before anything is written there. */
+   or if the files cannot be written (reason in `why`). Unless restore->begins is set, the first call of a restore also ends the
+   recordings that are already in the database. To do so, it adds a point without a value right after each tag's last point.
+   This daemon must not send points to the database before that call. */
 bool postgres_restore_step(struct postgres_restore *restore, struct postgres_tables *tables, int64_t now_us, int64_t *points,
                            char why[POSTGRES_WHY_BYTES]);
 

@@ -75,7 +75,7 @@ double overlay_bar_left(struct pen *pen);
 int overlay_strip_height(int width_px, int height_px);
 /* Writes the machine-readable legend strip over the lowest rows of the frame, if the frame is large enough. bgrx: the frame's pixels. */
 void overlay_strip(struct pen *pen, uint8_t *bgrx, int stride_bytes);
-/* Draws the legend of the pen's half of the view. */
+/* Draws the legend of the half that pen_choose_half() selected, or of the whole view if it is not split. */
 void overlay_legend(struct pen *pen);
 /* Returns whether both halves of a split view have equal legends. Afterwards the pen draws on the right half. */
 bool overlay_legend_is_shared(struct pen *pen);
@@ -91,7 +91,7 @@ bool overlay_unproven(const struct pen *pen, int tag);
 /* Draws an alarm ring. The colour shows the priority, the form the state: thick: unacknowledged; thin: acknowledged; hollow: returned to
    normal but not acknowledged. */
 void overlay_ring(struct pen *pen, double x, double y, double radius, int priority, enum alarm_status word);
-/* Returns whether the pen's half of the view shows arrows. */
+/* Returns whether the half that pen_choose_half() selected (the whole view, if it is not split) shows arrows. */
 bool overlay_has_arrows(const struct pen *pen);
 /* overlay_arrow_px returns the length of the longest arrow in pixels, overlay_arrow_value the value that this length represents. */
 double overlay_arrow_px(const struct pen *pen);
@@ -102,7 +102,8 @@ void overlay_arrow(struct pen *pen, double x, double y, double dx_px, double dy_
 bool overlay_is_unknown_direction(const struct frame_label *label);
 /* Draws a cross at the position of an arrow whose direction is unknown. */
 void overlay_unknown_direction(struct pen *pen, double x, double y);
-/* Draws the arrows in the pen's half of the view. */
+/* Draws the symbols for directions (arrows, strokes and crosses) in the half that pen_choose_half() selected, or in the whole
+   view if it is not split. */
 void overlay_arrows(struct pen *pen);
 /* Draws markers, alarm rings and labels of the selected half. */
 void overlay_markers(struct pen *pen);

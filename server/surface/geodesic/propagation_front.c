@@ -11,8 +11,10 @@
 /* minimum barycentric weight of a source's position in its triangle; a source on a corner or edge is moved inwards to that
    extent */
 #define MIN_WEIGHT 1e-6
-/* lay_out_beyond() follows a straight line to find the triangle with a given corner. The line ends inside the triangle, at this
-   fraction of the way from the corner to the middle of the opposite side. */
+/* Used by lay_out_beyond(), which follows a straight line to the triangle with a given corner. Several triangles meet at the
+   corner itself, so the line ends a little inside the triangle. Its end lies between the corner and the middle of the opposite
+   side, at this fraction of the distance between the two. Also the tolerance for the corner's position, as a fraction of that
+   side's length. */
 #define CORNER_OFFSET 1e-3
 /* Points whose distances differ by up to this many buckets of the priority queue may be processed in any order. Distances count as final up
    to the current bucket plus this many. */

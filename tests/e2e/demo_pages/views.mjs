@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Views in the browser: standard views, parallel projection, a section, hidden and shown equipment, and what lies at a clicked
-// point.
+// Tests how users choose what the picture shows: standard views and parallel projection, sections, ghosted and hidden
+// equipment, flights to a tag, and the card of a clicked point.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Alarms in the browser: counted and marked in every view, listed, acknowledged, shelved, and reached by a flight.
+// Tests alarms in the browser: every view counts and marks them, the list shows the most urgent first, and users can
+// acknowledge and shelve them and fly to their tags.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The list of equipment: areas, search, keyboard, links, selection in the list and in 3D; and a plant of 20,000 tags, which
-// scrolls smoothly.
+// Tests the list of equipment: it shows areas, assets and tags, can be searched and used by keyboard alone, and has the same
+// selection as the 3D picture. With 20,000 tags it must scroll smoothly.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// OPC UA servers that send wrong sizes, fall silent between rare messages, send future timestamps, have a wrong clock, or
-// listen at the second address of their name.
+// Tests how the daemon deals with OPC UA servers that send wrong sizes, fall silent between rare messages, send future
+// timestamps, have a wrong clock, or listen at the second address of their name.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sources of type opcua with node-opcua's server: values, status codes and timestamps bit by bit, arrays, namespaces that
-// change their index, deadbands, browsing, and a server that is killed, frozen, full and restarted.
+// Tests sources of type opcua with node-opcua's server: values, status codes and timestamps arrive bit by bit. While the server
+// is gone, all tags are Bad; when it returns, all are read again, even if namespaces have other indices. Also tests deadbands
+// and browsing.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
