@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Places the labels of alarm rings (circles around markers of tags in alarm). Each ring gets its own label, or several rings that are close
 // together share one, a call-out (protocol/LABELS.md).
-import { boxAt, CLEARANCE, grow, hasArea, meets, SLOTS } from './labels.js';
+import { awayFrom, boxAt, CLEARANCE, grow, hasArea, meets, SLOTS } from './labels.js';
 
 // Distances in CSS pixels (larger on a wall). Alarm rings closer than CLOSE get one label together. Rings that already share a label keep
 // it up to the distance STILL_CLOSE, so that labels do not flicker.
@@ -84,10 +84,6 @@ function boxOf(one, slot, unit) {
     const left = one.x + dx * unit - one.width / 2, top = one.y + dy * unit - one.height / 2;
     return { left, top, right: left + one.width, bottom: top + one.height };
 }
-
-// Returns the distance of a label's box from a point, or from a box around the point. across, down: half that box's width and height.
-const awayFrom = ({ x, y }, { left, top, right, bottom }, across = 0, down = 0) =>
-    Math.hypot(Math.max(0, Math.max(left - x, x - right) - across), Math.max(0, Math.max(top - y, y - bottom) - down));
 
 const hasFiniteBox = ({ x, y, across, down, width, height }) => [x, y, across, down, width, height].every(Number.isFinite);
 const placeable = (items, area, unit) => (hasArea(area) && unit > 0 && unit < Infinity

@@ -25,6 +25,10 @@ export const SLOTS = [ // side, upper edge in heights
 // Returns true if an area is finite and larger than 0x0; otherwise no labels are placed.
 export const hasArea = ({ left, top, right, bottom }) => right > left && bottom > top && right - left < Infinity && bottom - top < Infinity;
 
+// Returns the distance of a label's box from a point, or from a box around the point. across, down: half that box's width and height.
+export const awayFrom = ({ x, y }, { left, top, right, bottom }, across = 0, down = 0) =>
+    Math.hypot(Math.max(0, Math.max(left - x, x - right) - across), Math.max(0, Math.max(top - y, y - bottom) - down));
+
 export const grow = ({ left, right, top, bottom }, by) => ({ left: left - by, right: right + by, top: top - by, bottom: bottom + by });
 
 export const meets = (a, b) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
@@ -62,9 +66,8 @@ class Taken {
     }
 
     // Returns true if the box comes closer to an alarm ring than a label may.
-    meetsRing({ left, top, right, bottom }, { x, y, owner }, own) {
-        const least = (own?.has(owner) ? RING : OTHER_RING) * this.unit;
-        return Math.max(0, left - x, x - right) ** 2 + Math.max(0, top - y, y - bottom) ** 2 < least ** 2;
+    meetsRing(box, { x, y, owner }, own) {
+        return awayFrom({ x, y }, box) < (own?.has(owner) ? RING : OTHER_RING) * this.unit;
     }
 }
 

@@ -43,13 +43,16 @@ struct label_box layout_grow(const struct label_box *box, double more)
     return (struct label_box){ box->x - more, box->y - more, box->width + 2 * more, box->height + 2 * more };
 }
 
+bool layout_meets(const struct label_box *a, const struct label_box *b)
+{
+    return a->x < b->x + b->width && b->x < a->x + a->width && a->y < b->y + b->height && b->y < a->y + a->height;
+}
+
 /* Returns whether a box comes too close to an item's alarm ring. group: group of rings to which the box belongs. */
 static bool meets_ring(const struct label_layout *layout, const struct label_box *box, int item, int group)
 {
     bool own = group != LABEL_NONE && layout->group_of[item] == group;
-    double x = layout->items[item].x, y = layout->items[item].y, least = (own ? RING_UNITS : OTHER_RING_UNITS) * layout->area->unit;
-    double aside = fmax(0, fmax(box->x - x, x - box->x - box->width)), away = fmax(0, fmax(box->y - y, y - box->y - box->height));
-    return aside * aside + away * away < least * least;
+    return layout_distance(&layout->items[item], box, 0, 0) < (own ? RING_UNITS : OTHER_RING_UNITS) * layout->area->unit;
 }
 
 bool layout_is_free(const struct label_layout *layout, const struct label_box *box, int owner, int group, enum label_over over)
@@ -60,10 +63,8 @@ bool layout_is_free(const struct label_layout *layout, const struct label_box *b
         for (int row = range[2]; row <= range[3]; row++)
             for (int i = layout->heads[row * layout->columns + column]; i >= 0; i = layout->entries[i].next) {
                 const struct cell_entry *entry = &layout->entries[i];
-                const struct label_box *other = &entry->box;
                 bool counts = entry->owner != owner && entry->kind > over;
-                if (counts && box->x < other->x + other->width && other->x < box->x + box->width && box->y < other->y + other->height &&
-                    other->y < box->y + box->height && (entry->kind != OVER_RINGS || meets_ring(layout, box, entry->owner, group)))
+                if (counts && layout_meets(box, &entry->box) && (entry->kind != OVER_RINGS || meets_ring(layout, box, entry->owner, group)))
                     return false;
             }
     return true;

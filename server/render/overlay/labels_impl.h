@@ -48,6 +48,8 @@ double layout_distance(const struct label_item *item, const struct label_box *bo
 bool layout_is_inside(const struct label_layout *layout, const struct label_box *box);
 /* Returns the box with `more` pixels added on each side. */
 struct label_box layout_grow(const struct label_box *box, double more);
+/* Returns whether two boxes overlap. Boxes that only share an edge do not. */
+bool layout_meets(const struct label_box *a, const struct label_box *b);
 /* Returns whether a box overlaps no occupied box, and is far enough from alarm rings. Ignored are the boxes of `owner`, and boxes that
    `over` allows a label to cover. The box may come closer to the rings of `group` than to others; LABEL_NONE: the box has no group. */
 bool layout_is_free(const struct label_layout *layout, const struct label_box *box, int owner, int group, enum label_over over);

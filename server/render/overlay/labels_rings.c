@@ -229,8 +229,7 @@ static bool is_free(const struct rings *rings, const struct ring_group *group, i
     if (!layout_is_inside(rings->layout, &box) || !layout_is_free(rings->layout, &grown, owner, index, over))
         return false;
     for (const struct ring_group *other = rings->groups; other < group; other++)
-        if (other->slot != NOWHERE && wide.x < other->box.x + other->box.width && other->box.x < wide.x + wide.width &&
-            wide.y < other->box.y + other->box.height && other->box.y < wide.y + wide.height)
+        if (other->slot != NOWHERE && layout_meets(&wide, &other->box))
             return false;
     return true;
 }
