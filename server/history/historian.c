@@ -37,7 +37,7 @@ enum {
 };
 static const int64_t TICK_NS = NS_PER_S, TIDY_NS = 1200 * NS_PER_S, KEEP_NS = 60 * NS_PER_S, STEP_NS = 2 * NS_PER_S,
                      LOOK_NS = 20 * NS_PER_MS;
-/* Age in microseconds. When the daemon ends, it records every Good reading once more whose newest sample is at least this old.
+/* Age in microseconds. When the daemon ends, it records again each Good reading whose newest sample is at least this old.
    Otherwise the tag's recorded line would end at that sample. */
 static const int64_t REPEAT_US = 10 * US_PER_S;
 

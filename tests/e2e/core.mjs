@@ -225,8 +225,8 @@ test('an action that the core cannot parse does not end the link; revoking the r
     const point = (more) => `{"type":"point","wall":"w","display":1,"x":${more}}`;
     client.say(point('['.repeat(2040) + ']'.repeat(2040)));
     client.say(point(`[${Array(14000).fill('1.1').join()}]`));
-    // The core answers messages in the order in which it receives them, so the answer to this one shows that it has processed
-    // those above.
+    // The core answers messages in the order in which it receives them, so the answer to this note shows that
+    // the core has processed the messages above.
     client.say({ type: 'note', seq: 1, text: 'sent after them', asset: 'E-101' });
     await client.text('noted');
     assert.equal(await a.metric('plantcast_core_connects_total'), connects);

@@ -103,8 +103,8 @@ for (const { file, as, chordMm, nodes, counted, assets } of [
         console.log(`# ${common.length} shapes, ${off} boxes differ; area ${areas[0].toFixed(2)} m2 for ${areas[1].toFixed(2)}`);
         assert.equal(off, 0, 'number of boxes that differ');
         // Plantcast leaves out faces that another primitive covers. The other converter leaves out fewer: it keeps covered
-        // faces of another size, and all faces of ducts. The import with --keep-covered finds the nodes that lost no face,
-        // whose areas can be compared.
+        // faces of another size, and all faces of ducts. The import with --keep-covered finds the nodes that lost no face.
+        // Only the areas of such nodes can be compared.
         const all = run('plantcast', 'import', model, '-o', join(folder, 'all'), '--chord', String(chordMm), '--keep-covered');
         assert.equal(all.status, 0, all.stderr);
         const kept = shapes(join(folder, `all/${file}.glb`));

@@ -267,7 +267,7 @@ test('a viewer can note, send and point at nothing; the audit trail names users 
         await page.evaluate(([messages, of]) => messages.forEach((message) => globalThis[of].session.post(message)), [asked, name]);
     };
     await post(wall.page, 'wall');
-    // of the messages posted at the wall, three were refused: a note, a view sent to a pane, and a pointer
+    // the server refused three of the messages posted at the wall: a note, a view sent to a pane, and a pointer
     await recorded(/refused.*room\.1\.1.*to write or remove notes: this needs the role operator/);
     await recorded(/(refused.*room\.1\.1.*to send views or a pointer to a wall: this needs the role operator[^]*){2}/);
     await post(desk.page, 'plantcast');

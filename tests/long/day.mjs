@@ -66,7 +66,7 @@ const crowd = () => new Promise((done, fail) => {
     child.on('exit', () => done(JSON.parse(out)));
 });
 
-// What happens to the plant while clients watch: one of these functions per round.
+// Events at the plant while clients watch: each round calls one of these functions.
 const events = [
     async function reload() {
         const text = readFileSync(plant.file, 'utf8'), turn = /description: warm/.test(text);

@@ -140,7 +140,7 @@ static void on_torus(const double size[3], double u, double v, double out[3])
     out[2] = size[0] * sin(2 * PI * v);
 }
 
-/* Shape of a pipe of radius size[0]: its axis follows an arc of 135 degrees about (0, 1), then that arc once more, rotated by
+/* Shape of a pipe of radius size[0]: its axis follows an arc of 135 degrees about (0, 1), then the same arc again, rotated by
    half a turn about its end, so that the pipe is S-shaped. */
 static void on_bent_pipe(const double size[3], double u, double v, double out[3])
 {

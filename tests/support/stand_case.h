@@ -4,7 +4,7 @@
 #define TESTS_SUPPORT_STAND_CASE_H
 #include "tests/support/rig_case.h"
 
-extern struct stand stand; /* set up anew for each test by the test's set-up function */
+extern struct stand stand; /* the set-up function of each test fills it */
 
 int stand_tear_down(void **state); /* finishes the stand */
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What tests of distances along surfaces share: a log of errors, worker threads, and random numbers whose seed is printed. */
+/* Shared parts of tests of distances along surfaces: a log of errors, worker threads, and random numbers whose seed is printed. */
 #ifndef TESTS_SURFACE_CASE_H
 #define TESTS_SURFACE_CASE_H
 #include "base/log/log.h"

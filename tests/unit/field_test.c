@@ -800,8 +800,8 @@ TEST(test_an_hour_of_changes_leaves_no_drift)
 }
 
 /* Changes of one reading that are large, but small enough to be added to the sums, leave rounding errors there. Later small
-   changes are added, too, and keep these errors. After some thousand additions the sums are computed anew, and the field has
-   the same bits as a new one again. */
+   changes are added, too, and keep these errors. After some thousand additions, the field computes the sums from all readings,
+   and has the same bits as a new field again. */
 TEST(test_sums_are_made_anew_now_and_then)
 {
     uint64_t random = sweep_seed();

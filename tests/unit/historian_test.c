@@ -495,7 +495,7 @@ CASE(what_waits_at_the_end_comes_with_the_next_start)
     int64_t last_ns = write_all(s, 7);
     historian_stop(&s->historian);
     assert_int_equal(access(spool, R_OK), 0);
-    start(s); /* starts and stops once more without a usable folder: the spool file must not be lost */
+    start(s); /* starts and stops the historian again, without a usable folder: the spool file must not be lost */
     sleep_ns(300 * NS_PER_MS);
     historian_stop(&s->historian);
     assert_int_equal(access(spool, R_OK), 0);

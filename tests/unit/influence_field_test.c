@@ -246,7 +246,7 @@ CASE(test_picks_of_fin_tell_their_error)
         }
     print_message("%zu places, %zu off by more than a step of colour, %zu marked\n", compared, off, marked);
     assert_true(off > 0 && marked < compared);
-    u->snapshot->readings[0].value = u->snapshot->readings[1].value = 20; /* these readings equal those around */
+    u->snapshot->readings[0].value = u->snapshot->readings[1].value = 20; /* the readings now equal those of the neighbouring tags */
     assert_true(look(u, place_of(1) + 0.3)->uncertain == 0);
     assert_true(u->scalars->drawn_error == 0);
     /* with a tenth of the thickness, d is 0.075 m: the field is inexact in most triangles */
@@ -530,7 +530,7 @@ CASE(test_what_others_say_is_kept_for_a_second)
     neighbours_cache_finish(&cache);
 }
 
-/* What the other sensors predict for a sensor must not depend on its own reading or quality, also while one of the others is
+/* The value that the other sensors predict for a sensor must not depend on its own reading or quality, also while one of the others is
    lost. */
 CASE(test_others_do_not_hear_a_sensor_itself)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What `plantcastd --check` finds in the headers of models and of recorded series, which it reads without the rest of these
+/* Faults that `plantcastd --check` finds in the headers of models and of recorded series, which it reads without the rest of these
    files. */
 #include "tests/support/test.h"
 

@@ -387,7 +387,7 @@ static void random_camera(struct outline_camera *camera, double pixel_m, double 
     camera->back_m = 4 * size_m;
 }
 
-/* what side * side rays within a pixel hit on the finest level: lowest and highest value of the field, nearest and farthest
+/* points that side * side rays within a pixel hit on the finest level: lowest and highest value of the field, nearest and farthest
    depth; missed: a ray hit nothing */
 struct sighted {
     double low, high, nearest, farthest;

@@ -18,7 +18,7 @@ struct postgres_owed { /* the time spans whose points must still be read from th
     struct postgres_span spans[POSTGRES_SPANS];
     size_t span_count;
     /* The span from the end of the former leader's recording to the start of this leader's. It is kept so that it can be read
-       once more (postgres_fill_again()). to_us 0: this daemon is not the leader. */
+       again (postgres_fill_again()). to_us 0: this daemon is not the leader. */
     struct postgres_span led;
 };
 
