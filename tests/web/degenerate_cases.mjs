@@ -83,6 +83,7 @@ add('callouts', 'placeRings', [rings, area, 1, { width: 90, height: 36 }], { cal
 add('labels', 'placeLabels', [rings, area, 1, [{ left: 0, top: 0, right: 40, bottom: 20 }], { width: 90, height: 36 }], { call: placed });
 add('labels', 'boxAt', [rings[0], 3, 1], ENDS);
 add('labels', 'leaderLine', [rings[0], { left: 60, top: 40 }, 5], ENDS);
+add('labels', 'awayFrom', [rings[0], area, 3, 4], ENDS);
 add('labels', 'meets', [area, area], ENDS);
 add('labels', 'grow', [area, 3], ENDS);
 add('labels', 'hasArea', [area], ENDS);
