@@ -27,6 +27,7 @@ static void print_usage(FILE *out)
     fputs("usage: plantcastd PLANT.yaml [OPTION ...]\n"
           "       plantcastd --check PLANT.yaml [OPTION ...]\n"
           "       plantcastd --dump-plan PLANT.yaml\n"
+          "       plantcastd --test-notify PLANT.yaml\n"
           "       plantcastd --list-gl-devices | --version | --help\n"
           "\n"
           "Serves live pictures of a plant to browsers and other clients.\n"
@@ -35,6 +36,8 @@ static void print_usage(FILE *out)
           "                   --tls-cert and --signing-key, print every error and exit; no server is started\n"
           "  --dump-plan      print the requests that this daemon would send to field devices, with registers\n"
           "                   and load, and exit\n"
+          "  --test-notify    send a test message to every recipient in the plant file's `notify`, print\n"
+          "                   whether each was accepted, and exit (exit status 0: all were)\n"
           "  --list-gl-devices  print the GPUs that --gl-device accepts, and exit\n"
           "\n"
           "Network:\n"
@@ -230,6 +233,7 @@ enum {
     OPTION_AGENT,
     OPTION_CHECK,
     OPTION_PLAN,
+    OPTION_TEST_NOTIFY,
     OPTION_VERSION,
     OPTION_HELP
 };
@@ -277,6 +281,7 @@ static const struct option options[] = {
     { "node", required_argument, NULL, OPTION_NODE },
     { "check", no_argument, NULL, OPTION_CHECK },
     { "dump-plan", no_argument, NULL, OPTION_PLAN },
+    { "test-notify", no_argument, NULL, OPTION_TEST_NOTIFY },
     { "version", no_argument, NULL, OPTION_VERSION },
     { "help", no_argument, NULL, OPTION_HELP },
     { NULL, 0, NULL, 0 },
@@ -436,6 +441,7 @@ static int take_option(int option, struct server_params *params, int (**task)(co
         return !optarg || params->imports_now ? -1 : usage_error("--import: expected --import or --import=now, found", optarg);
     case OPTION_CHECK: *task = server_check; return -1;
     case OPTION_PLAN: *task = server_dump_plan; return -1;
+    case OPTION_TEST_NOTIFY: *task = server_test_notify; return -1;
     case OPTION_VERSION: puts("plantcastd " PLANTCAST_VERSION LACKS); return GOOD;
     case OPTION_HELP: print_usage(stdout); return GOOD;
     default: return take_role_option(option, params);

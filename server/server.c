@@ -30,6 +30,7 @@
 #include "helper_program.h"
 #include "message/view_named.h"
 #include "plant/models/model_check.h"
+#include "notify/test_messages.h"
 #include "plant/plant_folder.h"
 #include "scene/scene_create.h"
 #include "value/read_plan_text.h"
@@ -720,4 +721,19 @@ int server_dump_plan(const struct server_params *params)
     text_finish(&text);
     plant_destroy(&plant);
     return 0;
+}
+
+int server_test_notify(const struct server_params *params)
+{
+    struct plant *plant = load_plant(params->plant_path);
+    if (!plant)
+        return 1;
+    struct log *log = log_create(LOG_WARN);
+    int failed = plant->notify ? test_messages_send(log, plant, stdout) : 1;
+    if (!plant->notify)
+        fprintf(stderr, "plantcastd: %s: the plant file has no `notify`, so there is nobody to send a test message to\n",
+                params->plant_path);
+    log_destroy(&log);
+    plant_destroy(&plant);
+    return failed != 0;
 }

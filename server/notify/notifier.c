@@ -149,21 +149,6 @@ static void on_end(void *arg, int recipient, const char *why)
     notifier->failing[recipient] = why != NULL;
 }
 
-static char *compose(const struct notifier *notifier, int recipient, const struct outbox_message *message, size_t *bytes)
-{
-    const struct plant *plant = notifier->params.plant;
-    const struct notify_recipient *to = recipient_of(notifier, recipient);
-    struct text mail = { 0 };
-    char *json = NULL;
-    switch (to->kind) {
-    case NOTIFY_EMAIL: notify_mail_text(&mail, plant, to, message, now_us()); break;
-    case NOTIFY_WEBHOOK: json = notify_webhook_text(plant, to, message); break;
-    case NOTIFY_ALERTMANAGER: json = notify_alerts_text(plant, message, now_us()); break;
-    }
-    *bytes = json ? strlen(json) : mail.length;
-    return json ? json : mail.at;
-}
-
 /* Sends all due messages. Saves the outbox before sending a message, so that a restarted daemon repeats the same message
    instead of making another one. */
 static void send_due(struct notifier *notifier)
@@ -173,7 +158,7 @@ static void send_due(struct notifier *notifier)
         if (!delivery_is_idle(notifier->delivery, i) || !outbox_next(notifier->outbox, i, now_us(), &message))
             continue;
         size_t bytes;
-        char *body = compose(notifier, i, &message, &bytes);
+        char *body = notify_text(notifier->params.plant, recipient_of(notifier, i), &message, now_us(), &bytes);
         save(notifier);
         char *why = delivery_start(notifier->delivery, i, body, bytes);
         if (why)

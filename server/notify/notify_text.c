@@ -16,6 +16,8 @@
    (RFC 2047); with it, the word fits into a line of 77 characters after the header's name. */
 enum { BASE64_LINE = 57, WORD = 42 };
 
+#define TEST_TEXT "Test message, no alarm"
+
 static const struct plant_tag *tag_of(const struct plant *plant, const struct outbox_item *item)
 {
     return item->tag < 0 ? NULL : &plant->tags[item->tag];
@@ -136,7 +138,9 @@ static void add_subject(struct text *out, const struct plant *plant, const struc
     while (of_it < message->count && message->items[of_it].priority == most_urgent)
         of_it++;
     text_add(out, "[%s] ", plant->name);
-    if (message->count == 1) {
+    if (message->is_test) {
+        text_add(out, "%s", TEST_TEXT);
+    } else if (message->count == 1) {
         const char *why = escalated_for(&message->items[0]);
         text_add(out, "%s%sP%d ", why, *why ? ": " : "", most_urgent);
         add_name(out, plant, &message->items[0]);
@@ -147,8 +151,11 @@ static void add_subject(struct text *out, const struct plant *plant, const struc
 
 static void add_body(struct text *out, const struct plant *plant, const struct outbox_message *message)
 {
-    text_add(out, "%s: %zu alarm%s\r\n\r\n", plant->name, message->count, message->count == 1 ? "" : "s");
-    for (size_t i = 0; i < message->count && i < NOTIFY_LINES; i++)
+    if (message->is_test)
+        text_add(out, "%s: %s\r\n", plant->name, TEST_TEXT);
+    else
+        text_add(out, "%s: %zu alarm%s\r\n\r\n", plant->name, message->count, message->count == 1 ? "" : "s");
+    for (size_t i = 0; i < message->count && i < NOTIFY_LINES && !message->is_test; i++)
         add_line(out, plant, &message->items[i]);
     if (message->count > NOTIFY_LINES)
         text_add(out, "... and %zu more\r\n", message->count - NOTIFY_LINES);
@@ -231,6 +238,8 @@ char *notify_webhook_text(const struct plant *plant, const struct notify_recipie
     json_t *body = json_pack("{s:i,s:s,s:s,s:s}", "version", 1, "id", message->id, "plant", plant->name, "recipient", recipient->id);
     set_time(body, "made", message->made_us);
     set_text(body, "link", plant->notify->link);
+    if (message->is_test)
+        json_object_set_new(body, "test", json_true());
     if (message->left_out > 0)
         json_object_set_new(body, "left_out", json_integer((json_int_t)message->left_out));
     json_object_set_new(body, "alarms", alarms);
@@ -242,13 +251,16 @@ static const char *severity_of(int priority)
     return priority == 1 ? "critical" : priority == 2 ? "error" : priority == 3 ? "warning" : "info";
 }
 
-static json_t *alert(const struct plant *plant, const struct outbox_item *item, int64_t now_us)
+static json_t *alert(const struct plant *plant, const struct outbox_item *item, bool is_test, int64_t now_us)
 {
     const struct plant_tag *tag = tag_of(plant, item);
     const struct plant_asset *asset = asset_of(plant, item);
     char priority[2] = { (char)('0' + item->priority), 0 };
     struct text summary = { 0 };
-    add_name(&summary, plant, item);
+    if (is_test)
+        text_add(&summary, "%s", TEST_TEXT);
+    else
+        add_name(&summary, plant, item);
     json_t *labels = json_pack("{s:s,s:s,s:s,s:s,s:s,s:s}", "alertname", "PlantAlarm", "plant", plant->name,
                                item->tag < 0 ? "device" : "tag", item->name, "kind", alarm_kind_name(item->kind), "priority", priority,
                                "severity", severity_of(item->priority));
@@ -274,6 +286,20 @@ char *notify_alerts_text(const struct plant *plant, const struct outbox_message 
 {
     json_t *alerts = json_array();
     for (size_t i = 0; i < message->count; i++)
-        json_array_append_new(alerts, alert(plant, &message->items[i], now_us));
+        json_array_append_new(alerts, alert(plant, &message->items[i], message->is_test, now_us));
     return json_text(alerts, 0);
+}
+
+char *notify_text(const struct plant *plant, const struct notify_recipient *recipient, const struct outbox_message *message, int64_t now_us,
+                  size_t *bytes)
+{
+    struct text mail = { 0 };
+    char *json = NULL;
+    switch (recipient->kind) {
+    case NOTIFY_EMAIL: notify_mail_text(&mail, plant, recipient, message, now_us); break;
+    case NOTIFY_WEBHOOK: json = notify_webhook_text(plant, recipient, message); break;
+    case NOTIFY_ALERTMANAGER: json = notify_alerts_text(plant, message, now_us); break;
+    }
+    *bytes = json ? strlen(json) : mail.length;
+    return json ? json : mail.at;
 }

@@ -8,6 +8,10 @@
 
 enum { NOTIFY_LINES = 50 /* maximum number of alarms that an e-mail lists; further ones are only counted */ };
 
+/* Returns the message in the format of the recipient's kind, and its length in *bytes; free with mem_free(). now_us: time for the
+   e-mail's Date header, and from which Alertmanager keeps an alarm OUTBOX_ALERT_US. */
+char *notify_text(const struct plant *plant, const struct notify_recipient *recipient, const struct outbox_message *message, int64_t now_us,
+                  size_t *bytes);
 /* Appends a complete e-mail, header and body, with the alarms of a message. Line ends are CRLF. now_us: time for the Date header. */
 void notify_mail_text(struct text *out, const struct plant *plant, const struct notify_recipient *recipient,
                       const struct outbox_message *message, int64_t now_us);

@@ -35,6 +35,7 @@ struct outbox_message {
     size_t count;
     int64_t left_out; /* number of further alarms that did not fit into the message */
     int64_t made_us;
+    bool is_test; /* true: the message only tests the way to the recipient, see test_messages.h */
 };
 
 struct outbox;

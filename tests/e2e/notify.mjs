@@ -10,7 +10,7 @@ import { PlainClient } from './support/plain_client.mjs';
 import { freePort } from './support/ports.mjs';
 import { promise } from './support/promise.mjs';
 import { HookServer, MailServer, makeCertificate } from './support/receivers.mjs';
-import { notBuilt, runProgram, sleep, TinyPlant } from './support/tiny_plant.mjs';
+import { notBuilt, Program, runProgram, sleep, TinyPlant } from './support/tiny_plant.mjs';
 import { until } from './support/until.mjs';
 
 const options = { skip: notBuilt(), timeout: 240000 };
@@ -266,6 +266,58 @@ notify:
         assert.match(checked.err, /plant\.yaml:\d+:\d+: error: to: unknown recipient 'nobody'/);
     } finally {
         await hook.close();
+        await plant.destroy();
+    }
+});
+
+test('--test-notify sends a marked message to every recipient and states which server did not accept it', options, async () => {
+    const plant = await TinyPlant.create(), hook = new HookServer(), redirecting = new HookServer();
+    const text = readFileSync(plant.file, 'utf8');
+    const ask = async () => {
+        const program = new Program('plantcastd', ['--test-notify', plant.file]);
+        return [(await program.ended).code, program.said];
+    };
+    try {
+        assert.match((await ask()).join(' '), /^1 plantcastd: .*plant\.yaml: the plant file has no `notify`/);
+        makeCertificate(plant.folder);
+        const mail = new MailServer(plant.folder);
+        await Promise.all([mail.listen(), hook.listen(), redirecting.listen()]);
+        const closed = await freePort();
+        redirecting.status = 302;
+        const accepted = `    - { id: ops, email: [ops@p.example, gone@p.example] }
+    - { id: tickets, webhook: "http://127.0.0.1:${hook.port}/" }
+    - { id: am, alertmanager: "http://127.0.0.1:${hook.port}/am" }
+`, refused = `    - { id: moved, webhook: "http://127.0.0.1:${redirecting.port}/" }
+    - { id: away, webhook: "http://127.0.0.1:${closed}/" }
+`;
+        const write = (recipients) => writeFileSync(plant.file, `${text}alarms: local
+notify:
+  mail: { server: "smtps://localhost:${mail.port}", from: plant@p.example, ca_file: mail.pem }
+  recipients:
+${recipients}  rules: [{ id: nobody, areas: "No such area", to: ops }]
+`);
+        write(accepted + refused);
+        const [code, said] = await ask(), lines = said.trim().split('\n');
+        assert.equal(code, 1, said);
+        for (const id of ['ops', 'tickets', 'am'])
+            assert.ok(lines.includes(`${id}: the server accepted the test message`), said);
+        assert.match(said, /^moved: not delivered: the server answered with HTTP status 302$/m);
+        assert.match(said, /^away: not delivered: Failed to connect/m);
+        assert.match(said, /the mail server refused <gone@p\.example>: 550/);
+        assert.equal(mail.mails[0].subject, '[Two boxes] Test message, no alarm');
+        const { body: alerts } = hook.posts.find(({ url }) => url === '/am/api/v2/alerts');
+        const { body } = hook.posts.find(({ url }) => url === '/');
+        assert.equal(body.test, true);
+        assert.equal(body.recipient, 'tickets');
+        assert.equal(alerts[0].labels.alertname, 'PlantAlarm');
+        assert.equal(alerts[0].labels.severity, 'critical');
+        assert.equal(alerts[0].annotations.summary, 'Test message, no alarm');
+        assert.ok(Date.parse(alerts[0].endsAt) > Date.now(), 'Alertmanager would treat the test as ended at once');
+        write(accepted);
+        assert.equal((await ask())[0], 0);
+        await mail.close();
+    } finally {
+        await Promise.all([hook.close(), redirecting.close()]);
         await plant.destroy();
     }
 });
