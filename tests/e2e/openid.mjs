@@ -160,8 +160,10 @@ test('each untrustworthy answer of the provider is refused with its reason, and 
         ['no nonce', /nonce/, (claims) => { delete claims.nonce; }],
         ['an unknown key', /key that the provider does not publish/, (claims, header) => { header.kid = 'other'; }],
         ['a changed signature', /signature of the ID token is invalid/, () => {}, () => 'AAAA'],
-        ['no role', /user kim: none of the user's groups has a role/, (claims) => { claims.groups = ['cleaners']; }],
-        ['no groups', /none of the user's groups/, (claims) => { delete claims.groups; }],
+        ['no role', /user kim: none of the user's groups has a role \(groups: \["cleaners"\]\)/,
+            (claims) => { claims.groups = ['cleaners']; }],
+        ['no groups', /none of the user's groups has a role \(groups: the provider sent no claim groups\)/,
+            (claims) => { delete claims.groups; }],
     ];
     for (const [name, why, change, sign = null] of cases) {
         const browser = new Browser();

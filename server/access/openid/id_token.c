@@ -10,6 +10,8 @@
 #include "base/text/json_text.h"
 #include "base/text/utf8.h"
 
+enum { GROUPS_LENGTH = 300 /* maximum number of characters of a user's groups in a message */ };
+
 static const int64_t OLDEST_S = 24 * 3600;
 
 static const struct {
@@ -158,6 +160,17 @@ bool id_token_has_groups(const struct openid_config *config, const json_t *claim
 {
     const json_t *groups = at_path(claims, config->groups_claim);
     return json_is_array(groups) || json_is_string(groups);
+}
+
+char *id_token_groups_text(const struct openid_config *config, const json_t *claims)
+{
+    const json_t *groups = at_path(claims, config->groups_claim);
+    char *json = groups ? json_dumps(groups, JSON_ENCODE_ANY | JSON_ENSURE_ASCII) : NULL;
+    char *text = !json                          ? mem_printf("the provider sent no claim %s", config->groups_claim)
+                 : strlen(json) > GROUPS_LENGTH ? mem_printf("%.*s...", GROUPS_LENGTH, json)
+                                                : mem_strdup(json);
+    free(json);
+    return text;
 }
 
 enum role id_token_role(const struct openid_config *config, const json_t *claims)

@@ -34,6 +34,8 @@ enum id_token_fault id_token_verify(const char *token, const struct id_token_exp
 enum role id_token_role(const struct openid_config *config, const json_t *claims);
 /* Returns true if the claims contain the user's groups. */
 bool id_token_has_groups(const struct openid_config *config, const json_t *claims);
+/* Returns the user's groups as JSON in ASCII for a message, cut to 300 characters; free with mem_free(). */
+char *id_token_groups_text(const struct openid_config *config, const json_t *claims);
 /* Writes the user's name for lists and journals: the name claim, else the e-mail address, else the claim `sub`. Returns false
    if no such claim can be displayed. */
 bool id_token_name(const struct openid_config *config, const json_t *claims, char *out, size_t size);

@@ -68,7 +68,10 @@ static struct person *make_person(struct openid *openid, json_t *claims, const j
     }
     holder.role = id_token_role(openid->config, claims);
     if (holder.role == ROLE_NOBODY) {
-        *why = mem_printf("user %s: none of the user's groups has a role; check roles in the --openid file", holder.name);
+        char *groups = id_token_groups_text(openid->config, claims);
+        *why =
+            mem_printf("user %s: none of the user's groups has a role (groups: %s); check roles in the --openid file", holder.name, groups);
+        mem_free(groups);
         return NULL;
     }
     struct person *person = mem_new(sizeof(*person));
