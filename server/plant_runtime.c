@@ -190,6 +190,7 @@ static bool start_core_link(struct plant_runtime *runtime)
     struct core_link_params params = { .log = context->log,
                                        .counters = context->counters,
                                        .plant = runtime->plant,
+                                       .models_hash = runtime->services.scene->models_hash,
                                        .store = runtime->services.store,
                                        .clock = runtime->services.clock,
                                        .alarm_service = runtime->services.alarm_service,

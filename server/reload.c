@@ -2,9 +2,12 @@
 /* The thread that reloads the plant: reads the plant again, compares it with the old one, and switches the daemon to the new one. */
 #include "reload.h"
 
+#include <inttypes.h>
 #include <jansson.h>
 #include <malloc.h>
+#include <stdatomic.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -15,9 +18,11 @@
 #include "base/mem.h"
 #include "base/text/json_text.h"
 #include "base/thread.h"
+#include "corelink/core_tags.h"
 #include "import_job.h"
 #include "plant/plant_diff.h"
 #include "plant/plant_folder.h"
+#include "plant/recipe.h"
 #include "helper_program.h"
 
 enum { MAX_FIRST_VIEWS = 16 }; /* maximum number of views drawn with the new plant before the switch */
@@ -26,6 +31,8 @@ static const int64_t SETTLE_NS = NS_PER_S;
 /* nanoseconds. FOLLOW_NS: how long a renderer waits for its core to switch to the new plant; LOOK_NS: interval at which it
    checks whether the core has. */
 static const int64_t FOLLOW_NS = 120 * NS_PER_S, LOOK_NS = 20 * NS_PER_MS;
+/* interval in nanoseconds at which a node tries again to get its core's tag list */
+static const int64_t MATCH_AGAIN_NS = 5 * NS_PER_S;
 /* time limit in milliseconds: a reload waits this long for another program to finish changing the plant's folder */
 enum { WAIT_MS = 3000 };
 
@@ -43,6 +50,9 @@ struct reload {
     char by[TOKEN_NAME_BYTES];     /* user who requested the running reload */
     const struct tag_save *saving; /* tag list that the running reload saves; NULL: none */
     const char *kept;              /* path under which the previous version of the tag list is kept */
+    char *failure;                 /* reason why the last reload failed; NULL: it succeeded */
+    char *unmatched;               /* last reported reason why this node has not got its core's files; NULL: none */
+    _Atomic bool stops;            /* true: the daemon ends, so a transfer of a tag list must end */
     struct refusal refusal;        /* reason why the running reload could not save the tag list; REFUSAL_NONE: it was saved */
     /* held while a reload replaces the runtime, and while this core becomes the leader (which polls devices), so that these
        never overlap */
@@ -61,6 +71,12 @@ struct reload {
     char expects[17];           /* hash that the configuration must have after the reload (plant file and tag list); empty: any */
     char who[TOKEN_NAME_BYTES]; /* user who requested the next reload */
     struct tag_save *save;      /* tag list that the next reload saves; NULL: none */
+    struct core_match {
+        struct core_files files;
+        char configuration[17]; /* the core's configuration; empty: there is no order */
+        int64_t due_ns;         /* monotonic time at which to carry out the order */
+    } match;                    /* order to make this node's files equal to its core's */
+    char agreed[17];            /* hash of the tag list that both cores have, to be recorded; empty: none */
 };
 
 void reload_count(struct counters *counters, const char *hash, bool in_force)
@@ -144,6 +160,8 @@ static void refuse(struct reload *reload, const struct diag *diag, const char *w
 {
     struct log *log = reload->context->log;
     json_t *errors = json_array();
+    mem_free(reload->failure);
+    reload->failure = mem_strdup(why ? why : "the plant has errors; the log says which");
     for (size_t i = 0; i < diag->count; i++) {
         const struct diag_item *item = &diag->items[i];
         if (item->severity != DIAG_ERROR)
@@ -329,13 +347,14 @@ static bool reload_now(struct reload *reload)
     return good;
 }
 
-/* Reloads the plant as soon as no other program is replacing its files; waits at most WAIT_MS. */
-static void reload_settled(struct reload *reload)
+/* Reloads the plant as soon as no other program is replacing its files; waits at most WAIT_MS. Returns false like reload_now(). */
+static bool reload_settled(struct reload *reload)
 {
     struct diag none = { 0 };
+    bool good = false;
     char *folder = plant_folder_of(reload->context->params->plant_path), *why = NULL;
     if (plant_folder_settle(&(struct plant_folder_params){ .folder = folder, .wait_ms = WAIT_MS }, &why)) {
-        reload_now(reload);
+        good = reload_now(reload);
     } else {
         char *line = mem_printf("the plant's folder %s: %s; try again later", folder, why);
         refuse(reload, &none, line);
@@ -343,6 +362,7 @@ static void reload_settled(struct reload *reload)
     }
     mem_free(why);
     mem_free(folder);
+    return good;
 }
 
 /* --- saving a tag list ----------------------------------------------------------------------------------------------------- */
@@ -377,8 +397,10 @@ static void put_back(struct reload *reload, const struct tag_save *save, const c
     mem_free(why);
 }
 
-static void save_now(struct reload *reload, const struct tag_save *save)
+/* Saves a tag list and activates it. Returns false if that fails; reload->failure then has the reason. */
+static bool save_now(struct reload *reload, const struct tag_save *save)
 {
+    bool good = false;
     struct log *log = reload->context->log;
     struct diag none = { 0 };
     char *kept = NULL, *why = NULL;
@@ -399,6 +421,8 @@ static void save_now(struct reload *reload, const struct tag_save *save)
             refuse(reload, &none, "plantcast-prep could not prepare the plant with this tag list; the log says why");
         } else if (!reload_now(reload)) {
             put_back(reload, save, kept);
+        } else {
+            good = true;
         }
     }
     reload->saving = NULL;
@@ -407,6 +431,124 @@ static void save_now(struct reload *reload, const struct tag_save *save)
         close(lock);
     mem_free(kept);
     mem_free(why);
+    return good;
+}
+
+/* --- getting the core's files ---------------------------------------------------------------------------------------------- */
+
+static bool has_hash(const char *path, const char *hash)
+{
+    uint64_t is;
+    char text[17] = "";
+    if (plant_model_hash(path, &is))
+        snprintf(text, sizeof(text), "%016" PRIx64, is);
+    return !strcmp(text, hash);
+}
+
+/* Requests the core's tag list. Returns its text (mem_free), or NULL with the reason in *why (mem_free). */
+static char *get_tags(struct reload *reload, const char *hash, char **why)
+{
+    struct http_request request = { 0 };
+    pthread_mutex_lock(&reload->put_lock); /* a standby that takes the lead frees its link to the core */
+    struct core_link *link = (*reload->runtime)->services.core_link;
+    bool good = link && core_tags_begin(&request, link, &reload->stops);
+    pthread_mutex_unlock(&reload->put_lock);
+    char *text = good ? core_tags_get(&request, hash, why) : NULL;
+    if (!good)
+        *why = mem_strdup("no leading core is known");
+    http_request_finish(&request);
+    return text;
+}
+
+/* Gets the core's tag list and activates it. Returns NULL on success, otherwise the reason (mem_free). *again: true: the next
+   attempt may succeed without a person's help. */
+static char *take_tags(struct reload *reload, const struct core_files *files, bool *again)
+{
+    const struct plant_runtime *runtime = *reload->runtime;
+    const struct plant *plant = runtime->plant;
+    bool is_standby = reload->context->params->role == SERVER_CORE;
+    const char *node = reload->context->params->node;
+    char *why = NULL, hash[17] = "", *real = realpath(plant->files.tags_path, NULL);
+    struct refusal unread;
+    struct tag_save save = { .path = real ? real : plant->files.tags_path, .who = reload->by };
+    save.before = tag_file_read(save.path, &unread);
+    if (save.before)
+        tag_file_hash(save.before, hash);
+    if (is_standby && !(runtime->services.history_folder && core_tags_agreed(runtime->services.history_folder, hash))) {
+        why =
+            mem_printf("%s on node %s was edited there, or the two cores never had the same list, so it is not replaced: make it equal to "
+                       "the leading core's list, and reload the plant on %s",
+                       save.path, node, node);
+    } else if ((save.after = get_tags(reload, files->tags, &why))) {
+        *again = true;
+        if (!save_now(reload, &save))
+            why = mem_printf("%s: %s", save.path, reload->failure);
+    } else {
+        *again = true;
+    }
+    mem_free(save.before);
+    mem_free(save.after);
+    free(real);
+    return why;
+}
+
+/* Logs and reports why this node has not got its core's files; takes ownership of `why`. NULL: this node has them. */
+static void report_unmatched(struct reload *reload, char *why)
+{
+    if (why && (!reload->unmatched || strcmp(why, reload->unmatched) != 0))
+        log_err(reload->context->log, "core: this node has not got its core's files: %s", why);
+    pthread_mutex_lock(&reload->put_lock);
+    struct core_link *link = (*reload->runtime)->services.core_link;
+    if (why && link && reload->context->params->role == SERVER_CORE)
+        core_link_report_files(link, why);
+    pthread_mutex_unlock(&reload->put_lock);
+    mem_free(reload->unmatched);
+    reload->unmatched = why;
+}
+
+static bool follows_core(struct reload *reload)
+{
+    pthread_mutex_lock(&reload->put_lock);
+    bool follows = (*reload->runtime)->services.core_link;
+    pthread_mutex_unlock(&reload->put_lock);
+    return follows;
+}
+
+/* Makes this node's files equal to its core's. Returns false if another attempt may succeed later. */
+static bool match_now(struct reload *reload, const struct core_match *match)
+{
+    const struct plant_files *own = &(*reload->runtime)->plant->files;
+    bool again = false;
+    char *why = NULL;
+    if (!follows_core(reload) || !strcmp(own->hash, match->configuration)) {
+        /* this core leads by now, or has loaded the core's files meanwhile */
+    } else if (!has_hash(own->path, match->files.plant)) {
+        why = mem_printf("the core has another plant file than %s on node %s: copy the core's plant file, tag list and models to that "
+                         "machine, run plantcast-prep, and reload the plant there",
+                         own->path, reload->context->params->node);
+    } else if (!has_hash(own->tags_path, match->files.tags)) {
+        why = take_tags(reload, &match->files, &again);
+    } else {
+        snprintf(reload->expected, sizeof(reload->expected), "%s", match->configuration);
+        if (!reload_settled(reload))
+            why = mem_printf("%s is equal to the core's, but cannot be activated: %s", own->tags_path, reload->failure);
+        reload->expected[0] = 0;
+    }
+    report_unmatched(reload, why);
+    return !again || !why;
+}
+
+/* Records that both cores have this tag list. */
+static void agree_now(struct reload *reload, const char *hash)
+{
+    report_unmatched(reload, NULL);
+    const char *folder = (*reload->runtime)->services.history_folder;
+    int error = folder ? core_tags_agree(folder, hash) : 0;
+    if (error)
+        log_err(reload->context->log,
+                "core: %s: cannot record that both cores have the same tag list (%s): this core will not get the "
+                "next one from the leader",
+                folder, strerror(-error));
 }
 
 /* --- importing a plant -------------------------------------------------------------------------------------------------- */
@@ -557,14 +699,53 @@ static void *run_leader(void *arg)
 
 /* --- life cycle -------------------------------------------------------------------------------------------------------- */
 
+/* Waits until the thread has something to do. Call with the thread's lock. */
+static void wait_for_work(struct reload *reload)
+{
+    while (!reload->asked && !reload->imports && !reload->save && !reload->agreed[0] && !reload->thread.stopping)
+        if (!reload->match.configuration[0])
+            pthread_cond_wait(&reload->thread.wake, &reload->thread.lock);
+        else if (clock_mono_ns() < reload->match.due_ns)
+            clock_cond_wait(&reload->thread.wake, &reload->thread.lock, reload->match.due_ns);
+        else
+            break;
+}
+
+/* Returns the order to match the core's files if it is due, and clears it; otherwise returns an empty order. Call with the
+   thread's lock. */
+static struct core_match take_match(struct reload *reload)
+{
+    struct core_match match = { .configuration = "" };
+    if (reload->match.configuration[0] && clock_mono_ns() >= reload->match.due_ns) {
+        match = reload->match;
+        reload->match.configuration[0] = 0;
+    }
+    return match;
+}
+
+/* Carries out an order to match the core's files. If that fails, the order becomes due again later, unless a newer one waits. */
+static void carry_out(struct reload *reload, struct core_match *match)
+{
+    snprintf(reload->by, sizeof(reload->by), "the core");
+    bool done = match_now(reload, match);
+    match->due_ns = clock_mono_ns() + MATCH_AGAIN_NS;
+    pthread_mutex_lock(&reload->thread.lock);
+    if (!done && !reload->match.configuration[0])
+        reload->match = *match;
+    pthread_mutex_unlock(&reload->thread.lock);
+}
+
 static void *reload_main(void *arg)
 {
     struct reload *reload = arg;
     char who[TOKEN_NAME_BYTES], expects[sizeof(reload->expects)];
     for (;;) {
         pthread_mutex_lock(&reload->thread.lock);
-        while (!reload->asked && !reload->imports && !reload->save && !reload->thread.stopping)
-            pthread_cond_wait(&reload->thread.wake, &reload->thread.lock);
+        wait_for_work(reload);
+        struct core_match match = take_match(reload);
+        char agreed[sizeof(reload->agreed)];
+        memcpy(agreed, reload->agreed, sizeof(agreed));
+        reload->agreed[0] = 0;
         bool stopping = reload->thread.stopping, asked = reload->asked;
         struct tag_save *save = reload->save;
         struct import_order order;
@@ -582,6 +763,10 @@ static void *reload_main(void *arg)
         tag_save_free(save);
         if (stopping)
             return NULL;
+        if (agreed[0])
+            agree_now(reload, agreed);
+        if (match.configuration[0])
+            carry_out(reload, &match);
         snprintf(reload->by, sizeof(reload->by), "%s", who);
         if (reload->import && plant_import_next(reload->import, &order))
             import_now(reload, &order);
@@ -617,12 +802,15 @@ void reload_destroy(struct reload **pointer)
     struct reload *reload = *pointer;
     if (!reload)
         return;
+    atomic_store(&reload->stops, true);
     thread_stop(&reload->leader);
     thread_stop(&reload->thread);
     tag_save_free(reload->save);
     thread_finish(&reload->leader);
     thread_finish(&reload->thread);
     pthread_mutex_destroy(&reload->put_lock);
+    mem_free(reload->failure);
+    mem_free(reload->unmatched);
     mem_free(reload);
     *pointer = NULL;
 }
@@ -648,6 +836,23 @@ void reload_follow(struct reload *reload, uint64_t session, const char *configur
     reload->follows = session;
     pthread_mutex_unlock(&reload->thread.lock);
     ask(reload, "the core", configuration ? configuration : "");
+}
+
+void reload_match(struct reload *reload, const struct core_files *files, const char *configuration)
+{
+    pthread_mutex_lock(&reload->thread.lock);
+    reload->match = (struct core_match){ .files = *files };
+    snprintf(reload->match.configuration, sizeof(reload->match.configuration), "%s", configuration);
+    pthread_cond_signal(&reload->thread.wake);
+    pthread_mutex_unlock(&reload->thread.lock);
+}
+
+void reload_agree(struct reload *reload, const char *tags_hash)
+{
+    pthread_mutex_lock(&reload->thread.lock);
+    snprintf(reload->agreed, sizeof(reload->agreed), "%s", tags_hash);
+    pthread_cond_signal(&reload->thread.wake);
+    pthread_mutex_unlock(&reload->thread.lock);
 }
 
 static void order(struct thread *thread, bool *order)

@@ -163,6 +163,16 @@ static void follow_reload(void *arg, uint64_t session, const char *configuration
     reload_follow(((struct server *)arg)->reload, session, configuration);
 }
 
+static void match_core(void *arg, const struct core_files *files, const char *configuration)
+{
+    reload_match(((struct server *)arg)->reload, files, configuration);
+}
+
+static void agree_on_tags(void *arg, const char *tags_hash)
+{
+    reload_agree(((struct server *)arg)->reload, tags_hash);
+}
+
 static void ask_save(void *arg, struct tag_save *save)
 {
     reload_save(((struct server *)arg)->reload, save);
@@ -210,6 +220,8 @@ static bool start_net(struct server *server)
         .end_leading = end_leading,
         .reload = ask_reload,
         .follow = server->params.role == SERVER_RENDER || server->keeper ? follow_reload : NULL,
+        .match = server->params.role == SERVER_RENDER || server->keeper ? match_core : NULL,
+        .agree = server->keeper ? agree_on_tags : NULL,
         .save = server->params.role == SERVER_RENDER ? NULL : ask_save,
         .import = server->import,
         .import_ordered = on_import_ordered,

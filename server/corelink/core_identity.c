@@ -3,13 +3,77 @@
    their messages would mean different tags. */
 #include "corelink/core_identity.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/text/json_text.h"
+#include "base/text/text.h"
+
+/* --- hashes of the plant's files ---------------------------------------------------------------------------------------------- */
+
+struct core_files core_files_of(const struct plant *plant, uint64_t models_hash)
+{
+    struct core_files files;
+    snprintf(files.plant, sizeof(files.plant), "%s", plant->files.plant_hash);
+    snprintf(files.tags, sizeof(files.tags), "%s", plant->files.tags_hash);
+    snprintf(files.models, sizeof(files.models), "%016llx", (unsigned long long)models_hash);
+    return files;
+}
+
+json_t *core_files_json(const struct core_files *files)
+{
+    return json_pack("{s:s,s:s,s:s}", "plant", files->plant, "tags", files->tags, "models", files->models);
+}
+
+static bool read_hash(const json_t *files, const char *name, char out[17])
+{
+    const char *text = json_member_text(files, name);
+    snprintf(out, 17, "%s", text ? text : "");
+    return text && strlen(text) == 16;
+}
+
+bool core_files_read(const json_t *told, struct core_files *out)
+{
+    const json_t *files = json_object_get(told, "files");
+    return read_hash(files, "plant", out->plant) && read_hash(files, "tags", out->tags) && read_hash(files, "models", out->models);
+}
+
+unsigned core_files_differing(const struct core_files *own, const struct core_files *other)
+{
+    return (strcmp(own->plant, other->plant) != 0 ? CORE_PLANT_FILE : 0) | (strcmp(own->tags, other->tags) != 0 ? CORE_TAG_LIST : 0) |
+           (strcmp(own->models, other->models) != 0 ? CORE_MODELS : 0);
+}
+
+char *core_files_text(unsigned files)
+{
+    static const char *const names[] = { "plant file", "tag list", "models" };
+    struct text text = { 0 };
+    text_add(&text, "%s", "");
+    for (unsigned i = 0; i < sizeof(names) / sizeof(names[0]); i++)
+        if (files & 1u << i)
+            text_add(&text, "%s%s", text.length ? ", " : "", names[i]);
+    return text.at;
+}
+
+/* --- introduction ------------------------------------------------------------------------------------------------------------- */
 
 json_t *core_identity_message(const char *type, const struct core_identity *own)
 {
-    return json_pack("{s:s,s:s,s:s,s:s}", "type", type, "version", own->version, "plant", own->plant, "configuration", own->configuration);
+    return json_pack("{s:s,s:s,s:s,s:s,s:o}", "type", type, "version", own->version, "plant", own->plant, "configuration",
+                     own->configuration, "files", core_files_json(&own->files));
+}
+
+/* Returns the names of the files that differ, in brackets; "" if the peer does not state its files. */
+static char *name_files(const json_t *told, const struct core_identity *own)
+{
+    struct core_files files;
+    if (!core_files_read(told, &files))
+        return mem_strdup("");
+    char *names = core_files_text(core_files_differing(&own->files, &files));
+    char *text = mem_printf(" (different: %s)", names);
+    mem_free(names);
+    return text;
 }
 
 char *core_identity_difference(const json_t *told, const char *peer, const struct core_identity *own)
@@ -21,8 +85,12 @@ char *core_identity_difference(const json_t *told, const char *peer, const struc
         const char *other = json_string_value(json_object_get(told, members[i].member));
         if (!other)
             return mem_printf("the %s does not send its %s", peer, members[i].member);
-        if (strcmp(other, members[i].own) != 0)
-            return mem_printf("%s: the %s has %.100s, this node %s", members[i].member, peer, other, members[i].own);
+        if (strcmp(other, members[i].own) != 0) {
+            char *files = members[i].own == own->configuration ? name_files(told, own) : mem_strdup("");
+            char *why = mem_printf("%s: the %s has %.100s, this node %s%s", members[i].member, peer, other, members[i].own, files);
+            mem_free(files);
+            return why;
+        }
     }
     return NULL;
 }

@@ -71,6 +71,8 @@ struct core_link {
     /* --- below: under thread.lock */
     struct lws_context *context; /* libwebsockets context for the connection to the core; NULL: not connected */
     bool is_up;
+    bool is_known;    /* true: this connection's core has accepted this node, or keeps the connection so that this core votes */
+    int leader_index; /* index in params.urls of the core that last accepted this node or refused its configuration; -1: none yet */
     uint64_t session; /* number of the connection that delivers readings, unique among all links of this process */
     int up_index;     /* index in params.urls of the core that sends this daemon readings */
     struct text *out; /* messages queued for sending to the core */
@@ -183,6 +185,16 @@ bool core_link_tell(struct core_link *link, const char *text)
     return up;
 }
 
+void core_link_report_files(struct core_link *link, const char *why)
+{
+    pthread_mutex_lock(&link->thread.lock);
+    if (link->is_known && link->context) {
+        queue(link, json_text(json_pack("{s:s,s:s}", "type", "files", "why", why), 0));
+        lws_cancel_service(link->context);
+    }
+    pthread_mutex_unlock(&link->thread.lock);
+}
+
 /* --- handling messages from the core ------------------------------------------------------------------------------------------ */
 
 static void end(struct core_link *link, const char *why)
@@ -216,9 +228,20 @@ static void stay_to_vote(struct core_link *link, const char *why)
     memcpy(said, text, sizeof(text));
 }
 
+/* Notes that this connection's core leads. stays: the core keeps the connection open. */
+static void note_leader(struct core_link *link, bool stays)
+{
+    pthread_mutex_lock(&link->thread.lock);
+    link->is_known = stays;
+    link->leader_index = link->turn.index;
+    pthread_mutex_unlock(&link->thread.lock);
+}
+
 static void on_refused(struct core_link *link, const json_t *message)
 {
     const char *why = json_string_value(json_object_get(message, "why"));
+    if (json_object_get(message, "configuration"))
+        note_leader(link, json_is_true(json_object_get(message, "votes")));
     arrive(link, 0, mem_strdup(link->in.at));
     if (link->params.keeper && !json_is_true(json_object_get(message, "takes_over")))
         lease_keeper_set_refused(link->params.keeper, why ? why : "no reason given");
@@ -230,7 +253,8 @@ static void on_refused(struct core_link *link, const json_t *message)
 
 static struct core_identity own_identity(const struct core_link *link)
 {
-    return (struct core_identity){ link->params.version, link->params.plant->name, link->params.plant->files.hash };
+    const struct plant *plant = link->params.plant;
+    return (struct core_identity){ link->params.version, plant->name, plant->files.hash, core_files_of(plant, link->params.models_hash) };
 }
 
 static void on_core(struct core_link *link, const json_t *message)
@@ -245,6 +269,7 @@ static void on_core(struct core_link *link, const json_t *message)
             lease_keeper_set_refused(link->params.keeper, NULL);
         if (link->params.historian)
             historian_follow(link->params.historian);
+        note_leader(link, true);
         arrive(link, 0, mem_strdup(link->in.at));
     }
     mem_free(why);
@@ -563,14 +588,11 @@ bool core_link_url_good(const char *url)
     return parse_url(url, &parsed);
 }
 
-bool core_link_peer(struct core_link *link, struct core_peer *out)
+/* Writes the address of the core with this index; -1: none. Returns false if there is none. */
+static bool peer_at(const struct core_link *link, int index, struct core_peer *out)
 {
     struct core_url url;
-    pthread_mutex_lock(&link->thread.lock);
-    bool up = link->is_up;
-    int index = link->up_index;
-    pthread_mutex_unlock(&link->thread.lock);
-    if (!up || !parse_url(link->params.urls[index], &url))
+    if (index < 0 || !parse_url(link->params.urls[index], &url))
         return false;
     bool address = strchr(url.host, ':'); /* true: the host is an IPv6 address, which a URL encloses in brackets */
     snprintf(out->url, sizeof(out->url), "http%s://%s%s%s:%d", url.tls ? "s" : "", address ? "[" : "", url.host, address ? "]" : "",
@@ -578,6 +600,22 @@ bool core_link_peer(struct core_link *link, struct core_peer *out)
     out->authorization = link->authorization;
     out->ca_path = link->params.ca_path;
     return true;
+}
+
+bool core_link_peer(struct core_link *link, struct core_peer *out)
+{
+    pthread_mutex_lock(&link->thread.lock);
+    int index = link->is_up ? link->up_index : -1;
+    pthread_mutex_unlock(&link->thread.lock);
+    return peer_at(link, index, out);
+}
+
+bool core_link_leader(struct core_link *link, struct core_peer *out)
+{
+    pthread_mutex_lock(&link->thread.lock);
+    int index = link->leader_index;
+    pthread_mutex_unlock(&link->thread.lock);
+    return peer_at(link, index, out);
 }
 
 /* Resolves a core's host name with a timeout, which the system's resolver and libwebsockets lack. Each call returns the next of
@@ -636,7 +674,7 @@ static void disconnect(struct core_link *link)
     pthread_mutex_lock(&link->thread.lock);
     struct lws_context *context = link->context;
     link->context = NULL;
-    link->is_up = false;
+    link->is_up = link->is_known = false;
     for (size_t i = 0; i < link->out_count; i++)
         text_finish(&link->out[i]);
     link->out_count = 0;
@@ -776,6 +814,7 @@ struct core_link *core_link_start(const struct core_link_params *params)
     struct counters *c = params->counters;
     link->params = *params;
     link->last_arrival = &link->arrivals;
+    link->leader_index = -1;
     link->readings = mem_array(params->plant->tag_count + 1, sizeof(*link->readings));
     add_up_counters(link);
     link->connects = counters_add(c, "plantcast_core_connects_total", "counter", "Connections to a core that delivered readings.");

@@ -18,6 +18,7 @@ struct core_link_params {
     struct log *log;
     struct counters *counters;
     const struct plant *plant;
+    uint64_t models_hash; /* hash of the plant's models (scene.models_hash) */
     struct store *store;
     struct plant_clock *clock;           /* this renderer's clock of the plant, which the link adjusts to the core's clock */
     /* alarm service that mirrors the core's alarms; plant, store and alarm service must outlive the link */
@@ -62,6 +63,8 @@ struct core_peer {
 };
 /* Writes the address of the core that is sending readings to *out, for HTTP queries. Returns false if no core is. Call from any thread. */
 bool core_link_peer(struct core_link *link, struct core_peer *out);
+/* Like core_link_peer(), but returns the core that last accepted this node, or refused it because of its configuration. */
+bool core_link_leader(struct core_link *link, struct core_peer *out);
 
 struct core_act {
     uint64_t client;      /* id of this daemon's client that receives the core's answer */
@@ -76,6 +79,9 @@ bool core_link_act(struct core_link *link, const struct core_act *act);
 
 /* Sends a JSON message that needs no answer. Returns false if no core is connected. Call from any thread. */
 bool core_link_tell(struct core_link *link, const char *text);
+/* Tells the leading core why this standby cannot get the core's files. Does nothing if no leading core is connected. Call from
+   any thread. */
+void core_link_report_files(struct core_link *link, const char *why);
 
 /* A message from the core, to be handled by the event loop. */
 struct core_arrival {

@@ -8,6 +8,7 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "base/text/hex.h"
+#include "corelink/core_identity.h"
 
 static bool hand_on(void *arg, const struct session *session, const char *text)
 {
@@ -60,16 +61,43 @@ static void follow(const struct server_context *server, uint64_t session, const 
         server->params.follow(server->params.reload_arg, session, configuration);
 }
 
-/* Handles the core's refusal of this daemon because their configurations differ: loads this daemon's files again, since the
-   core's new files may have arrived on this machine. Tries this once per configuration that the core names. */
+/* Handles the core's refusal of this daemon because their configurations differ: makes this daemon get the core's tag list, or
+   load its own files again, since the core's new files may have arrived on this machine. A refused renderer reconnects every
+   second, and therefore tries this once per configuration that the core names. */
 static void take_refusal(struct server_context *server, const json_t *refusal)
 {
     const char *configuration = json_string_value(json_object_get(refusal, "configuration"));
-    if (!configuration || !strcmp(configuration, server->core.followed))
+    struct core_files files;
+    if (!configuration || (!server->params.is_core && !strcmp(configuration, server->core.followed)))
         return;
     snprintf(server->core.followed, sizeof(server->core.followed), "%s", configuration);
     server->core.reloads = false;
-    follow(server, 0, configuration);
+    if (server->params.match && core_files_read(refusal, &files))
+        server->params.match(server->params.reload_arg, &files, configuration);
+    else
+        follow(server, 0, configuration);
+}
+
+/* Handles the hashes of files in the core's introduction: logs that the core has other models, and records the common tag list. */
+static void take_files(const struct server_context *server, const json_t *message)
+{
+    const struct scene *scene = server->params.plant.scene;
+    const struct core_files own = core_files_of(scene->plant, scene->models_hash);
+    struct core_files files;
+    if (!core_files_read(message, &files))
+        return;
+    if (server->params.agree)
+        server->params.agree(server->params.reload_arg, own.tags);
+    if (!(core_files_differing(&own, &files) & CORE_MODELS))
+        return;
+    const char *node = server->params.node_name;
+    char *why = mem_printf("node %s shows other models than the core: copy the models from the core's machine, run plantcast-prep, and "
+                           "reload the plant on %s",
+                           node, node);
+    log_err(server->params.log, "core: models: the core has %s, this node %s: %s", files.models, own.models, why);
+    if (server->params.is_core)
+        core_link_report_files(server->params.plant.core_link, why);
+    mem_free(why);
 }
 
 /* Handles the core's message that it accepts this daemon. If the leading core has just loaded its plant, a standby core now
@@ -78,6 +106,7 @@ static void take_refusal(struct server_context *server, const json_t *refusal)
 static void take_introduction(struct server_context *server, const json_t *message)
 {
     take_key(server, message);
+    take_files(server, message);
     server->core.followed[0] = 0;
     if (server->core.reloads)
         follow(server, 0, server->session_context.plant->files.hash);

@@ -126,9 +126,10 @@ static const char *core_standing(const struct server_context *server)
         return NULL;
     if (!core_end_leads(server))
         return server->session_context.core_up ? "standby: follows the core that leads" : "standby: not connected to a core that leads";
-    return lease_keeper_is_alone(keeper)     ? "leads; standby: maintenance, no other core takes over"
-           : !renderers_have_standby(server) ? "leads; no standby follows this core: the log says why"
-                                             : "leads; a standby follows";
+    return lease_keeper_is_alone(keeper)           ? "leads; standby: maintenance, no other core takes over"
+           : !renderers_have_standby(server)       ? "leads; no standby follows this core: the log says why"
+           : renderers_standby_lacks_files(server) ? "leads; a standby follows, but its models differ: the log says why"
+                                                   : "leads; a standby follows";
 }
 
 static bool has_core(const struct server_context *server)
@@ -167,6 +168,7 @@ static void tick(struct net *net, int64_t now_ns)
     }
     look_at_files(net, now_ns);
     look_around(net, now_ns);
+    renderers_describe_standby(&net->server);
     record_held(&net->server, now_ns);
     admission_on_tick(&net->server.room.admission, now_ns);
     counter_set(net->server.counters.busy, admission_busy_percent(&net->server.room.admission));
@@ -415,6 +417,9 @@ static void add_counters(struct server_context *server)
         counters_add(c, "plantcast_logins_slowed_addresses", "gauge", "Addresses rate-limited after ten wrong tokens within a minute.");
     server->counters.renderers =
         counters_add(c, "plantcast_renderers", "gauge", "Renderers connected to this core; the standby is not counted.");
+    server->counters.standby_files =
+        counters_add(c, "plantcast_core_standby_differing_files", "gauge",
+                     "Number of the standby's files (1 plant file, 1 tag list, 1 for all models) that differ from this core's.");
     server->counters.requests = counters_add(c, "plantcast_http_requests_total", "counter", "HTTP requests.");
 }
 
@@ -588,6 +593,7 @@ void net_destroy(struct net **net_ptr)
     snapshot_destroy(&net->server.readings.snapshot);
     mem_free(net->server.readings.changes);
     mem_free(net->server.readings.links_up);
+    json_decref(net->server.session_context.standby);
     net_calls_finish(net);
     mem_free(net);
     *net_ptr = NULL;

@@ -9,6 +9,7 @@
 #include "audit/audit.h"
 #include "base/metrics/counters.h"
 #include "base/log/log.h"
+#include "corelink/core_identity.h"
 #include "corelink/core_link.h"
 #include "history/historian.h"
 #include "notify/notifier.h"
@@ -59,6 +60,10 @@ struct net_params {
     /* callback in the event loop that reloads the plant because this daemon's core reloads it, see reload_follow(). NULL: this daemon has
        no core */
     void (*follow)(void *arg, uint64_t session, const char *configuration);
+    /* callback in the event loop that gets the leading core's tag list, see reload_match(). NULL: this daemon has no core */
+    void (*match)(void *arg, const struct core_files *files, const char *configuration);
+    /* callback in the event loop that records that both cores have the tag list with this hash; set only with `keeper` */
+    void (*agree)(void *arg, const char *tags_hash);
     /* callback in the event loop that activates a saved tag list and takes ownership of `save`; NULL: tag lists cannot be saved */
     void (*save)(void *arg, struct tag_save *save);
     struct plant_import *import; /* service that imports plants; NULL: import is off */

@@ -47,6 +47,8 @@ struct renderer_peer {
     char *refusal;     /* reason why the peer is refused; NULL: the peer is not refused */
     bool refusal_sent; /* true: the peer, which may only vote, was sent the reason of its refusal */
     bool other_configuration; /* true: the peer is refused only because its configuration differs from this core's */
+    unsigned differing;       /* mask of enum core_file: the peer's files that differ from this core's */
+    char *behind;             /* standby: the reason that it states why it has not got this core's files; NULL: none */
     struct core_sent sent;
     bool alarms_sent, lists_sent, links_sent;
     bool stands_by; /* true: the peer is a standby, a core that follows this one and can take over */
@@ -101,7 +103,8 @@ void renderers_make_key(struct server_context *server)
 static struct core_identity own_identity(const struct server_context *server)
 {
     const struct plant *plant = server->session_context.plant;
-    return (struct core_identity){ server->params.version, plant->name, plant->files.hash };
+    return (struct core_identity){ server->params.version, plant->name, plant->files.hash,
+                                   core_files_of(plant, server->params.plant.scene->models_hash) };
 }
 
 /* Returns whether the other core's promises not to take the lead for a while (corelink/lease.h) count. A core with other plant
@@ -117,23 +120,66 @@ static bool is_standby(const struct renderer_peer *renderer)
     return renderer->stands_by && renderer->state == RENDERER_TAKEN;
 }
 
-/* Tells the lease keeper which core is the standby, because only its promise not to take the lead is a vote. */
-static void name_standby(struct server_context *server)
-{
-    const struct renderer_peer *witness = NULL;
-    for (const struct renderer_peer *renderer = server->core.renderers; renderer; renderer = renderer->next)
-        if (is_witness(renderer))
-            witness = renderer;
-    if (server->params.keeper)
-        lease_keeper_set_standby(server->params.keeper, witness ? witness->lease : "", witness && is_standby(witness));
-}
-
 bool renderers_have_standby(const struct server_context *server)
 {
     const struct renderer_peer *renderer = server->core.renderers;
     while (renderer && !is_standby(renderer))
         renderer = renderer->next;
     return renderer;
+}
+
+static const struct renderer_peer *find_witness(const struct server_context *server)
+{
+    const struct renderer_peer *witness = NULL;
+    for (const struct renderer_peer *renderer = server->core.renderers; renderer; renderer = renderer->next)
+        if (is_witness(renderer))
+            witness = renderer;
+    return witness;
+}
+
+/* Describes the standby for engineers' pages (`standby` in the message `status`). NULL: this core leads no pair. */
+static json_t *describe_standby(const struct server_context *server)
+{
+    static const char *const names[] = { "plant", "tags", "models" };
+    const struct renderer_peer *standby = find_witness(server);
+    if (!server->params.keeper || !core_end_leads(server))
+        return NULL;
+    json_t *files = json_array(), *text = json_pack("{s:b,s:o}", "connected", standby != NULL, "files", files);
+    for (unsigned i = 0; standby && i < sizeof(names) / sizeof(names[0]); i++)
+        if (standby->differing & 1u << i)
+            json_array_append_new(files, json_string(names[i]));
+    if (!standby)
+        return text;
+    json_object_set_new(text, "node", json_string(standby->name));
+    const char *why = standby->behind ? standby->behind : standby->refusal && !standby->other_configuration ? standby->refusal : NULL;
+    if (why)
+        json_object_set_new(text, "why", json_string(why));
+    return text;
+}
+
+void renderers_describe_standby(struct server_context *server)
+{
+    json_t *standby = describe_standby(server), *before = server->session_context.standby;
+    const json_t *files = json_object_get(standby, "files");
+    counter_set(server->counters.standby_files, (int64_t)json_array_size(files));
+    bool changed = standby && before ? !json_equal(standby, before) : standby != before;
+    server->session_context.standby = standby;
+    server->readings.links_changed |= changed;
+    json_decref(before);
+}
+
+/* Tells the lease keeper which core is the standby, because only its promise not to take the lead is a vote. */
+static void name_standby(struct server_context *server)
+{
+    const struct renderer_peer *witness = find_witness(server);
+    if (server->params.keeper)
+        lease_keeper_set_standby(server->params.keeper, witness ? witness->lease : "", witness && is_standby(witness));
+    renderers_describe_standby(server);
+}
+
+bool renderers_standby_lacks_files(const struct server_context *server)
+{
+    return json_array_size(json_object_get(server->session_context.standby, "files")) > 0;
 }
 
 const char *renderers_complete_standby(const struct server_context *server)
@@ -221,6 +267,7 @@ static void on_close(struct server_context *server, struct renderer_peer **slot)
     json_decref(renderer->answers);
     mem_free(renderer->links);
     mem_free(renderer->refusal);
+    mem_free(renderer->behind);
     mem_free(renderer);
     *slot = NULL;
     name_standby(server);
@@ -323,8 +370,11 @@ static bool send_refusal(const struct server_context *server, struct renderer_pe
        version differs may, because the two cores of a pair are upgraded one after the other. */
     json_t *message = json_pack("{s:s,s:s,s:b,s:b}", "type", "refused", "why", renderer->refusal, "votes", votes, "takes_over",
                                 votes && !renderer->other_configuration);
-    if (renderer->other_configuration)
-        json_object_set_new(message, "configuration", json_string(server->session_context.plant->files.hash));
+    if (renderer->other_configuration) {
+        const struct core_identity own = own_identity(server);
+        json_object_set_new(message, "configuration", json_string(own.configuration));
+        json_object_set_new(message, "files", core_files_json(&own.files));
+    }
     return send_message(renderer, message);
 }
 
@@ -578,6 +628,8 @@ static void end_voters(struct server_context *server)
 static void judge(struct server_context *server, struct renderer_peer *renderer, const json_t *message, const struct core_identity *own)
 {
     const char *plant = json_string_value(json_object_get(message, "plant")), *id = json_string_value(json_object_get(message, "id"));
+    struct core_files files;
+    renderer->differing = core_files_read(message, &files) ? core_files_differing(&own->files, &files) : 0;
     char *cannot_follow = core_identity_difference(message, "renderer", own);
     char *cannot_stand_by = role_refusal(renderer);
     renderer->other_configuration = core_identity_is_other_configuration(message, own);
@@ -612,11 +664,18 @@ static void introduce(struct server_context *server, struct renderer_peer *rende
     renderer->links = mem_array(plant->source_count + 1, sizeof(*renderer->links));
     renderer->hello = core_identity_message("core", &own);
     json_object_set_new(renderer->hello, "key", json_string(server->core.key));
+    if (renderer->stands_by && server->params.agree)
+        server->params.agree(server->params.reload_arg, own.files.tags);
     if (renderer->stands_by && server->params.plant.historian)
         historian_on_standby(server->params.plant.historian);
     if (renderer->stands_by)
         renderer->samples = core_samples_listen(server->params.plant.store);
     log_info(server->params.log, renderer->stands_by ? "standby %s: follows" : "renderer %s: connected", renderer->name);
+    if (renderer->differing)
+        log_err(server->params.log,
+                "%s %s: its models differ from this core's, so its pictures show another plant: copy the models to its machine, run "
+                "plantcast-prep and reload the plant there",
+                renderer->stands_by ? "standby" : "renderer", renderer->name);
     net_refresh_readings(server);
     count(server);
 }
@@ -674,6 +733,19 @@ static void on_promise(const struct server_context *server, struct renderer_peer
     lease_keeper_promised(server->params.keeper, renderer->lease, number);
 }
 
+/* Handles a standby's message that it cannot get this core's files. */
+static void take_files(struct server_context *server, struct renderer_peer *renderer, const char *why)
+{
+    if (!why || (renderer->behind && !strcmp(renderer->behind, why)))
+        return;
+    mem_free(renderer->behind);
+    renderer->behind = mem_strdup(why);
+    char *files = core_files_text(renderer->differing);
+    log_err(server->params.log, "standby %s: has not got this core's %s: %s", renderer->name, files, why);
+    mem_free(files);
+    renderers_describe_standby(server);
+}
+
 static const char *on_message(struct server_context *server, struct renderer_peer *renderer)
 {
     json_t *message = json_loadb(renderer->in.at, renderer->in.length, JSON_REJECT_DUPLICATES, NULL);
@@ -684,6 +756,8 @@ static const char *on_message(struct server_context *server, struct renderer_pee
         introduce(server, renderer, message);
     else if (!strcmp(type, "promise") && is_witness(renderer) && server->params.keeper)
         on_promise(server, renderer, (uint64_t)json_integer_value(json_object_get(message, "number")));
+    else if (!strcmp(type, "files") && is_witness(renderer))
+        take_files(server, renderer, json_string_value(json_object_get(message, "why")));
     else if (renderer->state != RENDERER_TAKEN)
         why = "the first message of the renderer or standby is not an introduction (type renderer)";
     else if (server->life.hands_over)

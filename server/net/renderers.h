@@ -12,6 +12,11 @@ int renderer_callback(struct lws *wsi, enum lws_callback_reasons reason, void *u
 const char *renderers_refusal(const struct server_context *server, struct lws *wsi);
 /* Returns whether a standby core of this version and configuration is connected to this core. */
 bool renderers_have_standby(const struct server_context *server);
+/* Returns whether the connected standby has other files than this core (plant file, tag list or models). */
+bool renderers_standby_lacks_files(const struct server_context *server);
+/* Updates what engineers' pages learn about the standby (session_context.standby). Call it whenever this core may have begun to
+   lead or to follow. */
+void renderers_describe_standby(struct server_context *server);
 /* Returns the lease name of the standby that has confirmed to have all state; NULL: none has. A standby can confirm this only
    once nothing changes any more (life.lead_ended_ns) and all actions are answered. Valid until the event loop runs again. */
 const char *renderers_complete_standby(const struct server_context *server);

@@ -169,7 +169,8 @@ struct server_context {
     struct tile_wall tile_walls[WALLS];
     struct {
         counter *sessions, *sessions_all, *frames, *frame_bytes, *depth_bytes, *messages, *errors, *dropped, *given_up, *stalled, *requests,
-            *refused, *connections, *busy, *clock_set, *clock_error, *clock_leap, *renderers, *logins_wrong, *logins_held, *logins_slowed;
+            *refused, *connections, *busy, *clock_set, *clock_error, *clock_leap, *renderers, *standby_files, *logins_wrong, *logins_held,
+            *logins_slowed;
     } counters;
 };
 

@@ -27,6 +27,7 @@ static char *folder_of(const char *path)
 static void hash_files(struct plant *plant)
 {
     const char *const paths[] = { plant->files.path, plant->files.tags_path };
+    char *const hashes[] = { plant->files.plant_hash, plant->files.tags_hash };
     XXH3_state_t *state = XXH3_createState();
     XXH3_64bits_reset(state);
     for (size_t i = 0; i < 2; i++) {
@@ -35,6 +36,7 @@ static void hash_files(struct plant *plant)
         XXH3_64bits_update(state, &count, sizeof(count));
         if (bytes)
             XXH3_64bits_update(state, bytes, count);
+        snprintf(hashes[i], sizeof(plant->files.tags_hash), "%016llx", bytes ? (unsigned long long)XXH3_64bits(bytes, count) : 0);
         mem_free(bytes);
     }
     snprintf(plant->files.hash, sizeof(plant->files.hash), "%016llx", (unsigned long long)XXH3_64bits_digest(state));

@@ -388,6 +388,7 @@ struct plant_files {
     char *path, *folder; /* path of the plant file, and its folder without trailing slash */
     char *tags_path;
     char hash[17];       /* hash of plant file and tag list in hexadecimal, which identifies the configuration */
+    char plant_hash[17], tags_hash[17]; /* hash of the plant file alone, and of the tag list alone, in hexadecimal */
     bool keeps_orphans;  /* true while loading: tags whose asset does not exist are accepted (plant_load_with_orphans()) */
     bool without_models; /* true while loading: missing model files are accepted (plant_load_without_models()) */
 };

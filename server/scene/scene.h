@@ -4,6 +4,7 @@
 #define SCENE_SCENE_H
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #include "plant/plant.h"
 #include "scene/asset.h"
@@ -36,6 +37,7 @@ struct scene_asset {
 struct scene {
     const struct plant *plant;
     char *folder;               /* folder of the prepared files; NULL: the scene was made in memory */
+    uint64_t models_hash;       /* hash of the model files of all assets; nodes with equal models have equal hashes */
     struct scene_asset *assets; /* assets of the plant, by index in plant->assets */
     size_t asset_count;
     double bounds_min_m[3], bounds_max_m[3]; /* bounding box of the main part (scene/main_part.h), in the plant frame */

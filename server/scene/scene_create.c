@@ -6,6 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <xxhash.h>
 
 #include "base/mem.h"
 #include "base/workers.h"
@@ -331,6 +332,7 @@ static bool create_assets(struct log *log, struct scene *scene, const struct man
         grow_box(scene->bounds_min_m, scene->bounds_max_m, asset->bounds_min_m);
         grow_box(scene->bounds_min_m, scene->bounds_max_m, asset->bounds_max_m);
     }
+    scene->models_hash = XXH3_64bits(hashes, scene->asset_count * sizeof(*hashes));
     mem_free(hashes);
     mem_free(uses.at);
     return good;

@@ -2,6 +2,8 @@
 /* State that all sessions share: the plant, its services and the server's limits. Call only in the event loop. */
 #ifndef SESSION_SESSION_CONTEXT_H
 #define SESSION_SESSION_CONTEXT_H
+#include <jansson.h>
+
 #include "access/openid/openid.h"
 #include "audit/audit.h"
 #include "base/files/file_writer.h"
@@ -36,6 +38,9 @@ struct session_context {
     bool (*hand_on)(void *arg, const struct session *session, const char *text);
     void *hand_on_arg;
     bool core_up; /* on a renderer (daemon that draws for a core): true: the core sends readings */
+    /* on a core that leads another one: what engineers learn about the standby (`standby` in the message `status`); NULL: there
+       is no pair, or this core does not lead */
+    json_t *standby;
     /* keys that sign view tokens, by which clients restore their view at another daemon; NULL: clients get no view tokens */
     const struct view_token_keys *token_keys;
     const bool *links_up;                     /* by source: true: the data source is connected */

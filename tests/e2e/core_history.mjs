@@ -137,7 +137,8 @@ test('users at the renderer need their own token for history, the renderer its o
     for (const [asked, token, status] of [[path, 'renderer', 200], ['/api/v1/tags', 'renderer', 403], ['/metrics', 'renderer', 403],
         ['/snapshot.png', 'renderer', 403], ['/core/instant?at_us=1', 'viewer', 403], ['/core/instant?at_us=1', 'operator', 403],
         ['/core/instant?at_us=1', 'renderer', 200], ['/core/instant?at_us=-1', 'renderer', 400],
-        ['/core/instant?at_us=1e3', 'renderer', 400], ['/core/instant', 'renderer', 400]])
+        ['/core/instant?at_us=1e3', 'renderer', 400], ['/core/instant', 'renderer', 400],
+        ['/core/tags', 'operator', 403], ['/core/tags', 'renderer', 200]])
         assert.equal((await body(strict, asked, nodes.tokens[token]))[0], status, `${asked} with the token of ${token}`);
     await far.stop();
     await strict.stop();

@@ -97,7 +97,7 @@ test('a standby with different files keeps its own, takes over only after a relo
     other.program.said = '';
     core.program.child.kill('SIGHUP');
     await other.program.line(/configuration: the renderer has .*only confirms the leader's lease/);
-    await other.program.line(/reload: keeping the configuration \w+: plant file and tag list differ from the core's/);
+    await other.program.line(/not got its core's files: the core has another plant file than \S+own\.yaml on node \w+: copy/);
     core.program.stopped = true;
     core.program.child.kill('SIGKILL');
     await other.program.line(/lease: no core leads, .*because the last leader refused this core \(configuration: /);

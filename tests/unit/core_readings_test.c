@@ -156,10 +156,40 @@ TEST(a_store_shows_what_the_other_shows)
     assert_int_equal(snapshot->readings[0].quality, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE);
 }
 
+TEST(differing_files_have_names)
+{
+    const struct core_identity own = { "1.0", "Plant", "abc", { "0000000000000001", "0000000000000002", "0000000000000003" } };
+    struct core_identity other = own;
+    struct core_files read;
+    json_t *message = test_json(core_identity_message("core", &own));
+    assert_true(core_files_read(message, &read));
+    assert_int_equal(core_files_differing(&read, &own.files), 0);
+    strcpy(other.files.models, "0000000000000004");
+    assert_int_equal(core_files_differing(&read, &other.files), CORE_MODELS);
+    assert_null(core_identity_difference(message, "core", &other)); /* nodes with other models can exchange readings */
+    strcpy(other.files.tags, "0000000000000005");
+    other.configuration = "def";
+    char *why = core_identity_difference(message, "core", &other), *names = core_files_text(0);
+    assert_string_equal(why, "configuration: the core has abc, this node def (different: tag list, models)");
+    assert_string_equal(names, "");
+    mem_free(why);
+    mem_free(names);
+    json_object_set_new(json_object_get(message, "files"), "tags", json_string("12"));
+    assert_false(core_files_read(message, &read));
+    json_object_del(message, "files");
+    assert_false(core_files_read(message, &read));
+    why = core_identity_difference(message, "core", &other);
+    assert_string_equal(why, "configuration: the core has abc, this node def");
+    mem_free(why);
+}
+
 TEST(differences_have_names)
 {
-    const struct core_identity own = { "1.0", "Plant", "abc" };
-    const struct core_identity others[] = { { "1.1", "Plant", "abc" }, { "1.0", "P", "abc" }, { "1.0", "Plant", "x" } };
+    const struct core_files files = { "0000000000000001", "0000000000000002", "0000000000000003" };
+    const struct core_identity own = { "1.0", "Plant", "abc", files };
+    const struct core_identity others[] = { { "1.1", "Plant", "abc", files },
+                                            { "1.0", "P", "abc", files },
+                                            { "1.0", "Plant", "x", files } };
     const char *const names[] = { "version", "plant", "configuration" };
     json_t *message = test_json(core_identity_message("core", &own));
     assert_null(core_identity_difference(message, "core", &own));

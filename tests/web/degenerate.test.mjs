@@ -16,7 +16,7 @@ const MB = 512;
 const TEXTS = ['depth_grid', 'headset_views', 'warp_mesh', 'warp_raster', 'alarm_actions', 'alarm_call', 'alarm_table', 'alarms',
     'asset_tree', 'blocked', 'connection', 'decode_queue', 'decoder_fallback', 'decoding', 'gpu', 'h264', 'handover', 'health', 'keys',
     'links', 'loop_check', 'matches', 'model', 'named_views', 'notes', 'people', 'quality', 'phrases', 'references', 'refusals',
-    'requests', 'search', 'session', 'wake', 'words'];
+    'requests', 'search', 'session', 'standby', 'wake', 'words'];
 
 // Runs the cases from number `first` on in another process, until one loops or fails to return. Adds the faults to `wrong`.
 // Returns the number of the case to go on with.

@@ -29,6 +29,7 @@ export class Model {
         this.live = null; // null: no message yet
         // true: a past instant is shown (stop())
         this.stopped = false;
+        this.standby = null; // state of the standby, for engineers of a core that leads one (standby.js); null: no such core
         this.clockSet = true; // true: the server's clock is synchronised
         this.clockErrorMs = null; // maximum error of the server's clock in milliseconds; null: unknown
         this.leapS = 0; // leap second announced for the end of the month: 1: will be inserted, -1: will be removed, 0: none

@@ -567,6 +567,7 @@ const HANDLERS = {
     status(message) {
         this.model.links = message.links;
         this.model.live = message.live;
+        this.model.standby = message.standby ?? null;
         this.model.clockSet = message.clock_set !== false;
         this.model.clockErrorMs = message.clock_error_ms ?? null;
         this.model.leapS = message.leap_s ?? 0;

@@ -689,4 +689,13 @@ saved(other): {count} Orte bestätigt. Die vorige Liste ist als {kept} gesichert
 undo: Zurück zu {kept} …
 changed: Nichts wurde bestätigt: die Liste hat sich geändert. Bitte die Zahl prüfen und noch einmal bestätigen.
 undone: Zurückgenommen. {kept} gilt wieder.
+
+[standby]
+plant: Anlagendatei
+tags: Messstellenliste
+models: Modelle
+none: Kein Reserveserver ist verbunden. Sobald er sich verbindet, erhält er die gespeicherte Messstellenliste.
+getting: Der Reserveserver {node} hat diese Dateien noch nicht: {files}.
+behind: Der Reserveserver {node} hat diese Dateien nicht erhalten ({files}): {why}
+refused: Der Reserveserver {node} kann nicht übernehmen: {why}
 `;

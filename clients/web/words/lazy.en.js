@@ -688,4 +688,13 @@ saved(other): {count} locations accepted. The previous list is kept as {kept}.
 undo: Undo: back to {kept} …
 changed: Nothing was accepted: the list has changed. Check the count and accept again.
 undone: Undone. {kept} applies again.
+
+[standby]
+plant: plant file
+tags: tag list
+models: models
+none: No standby is connected. When a standby connects, it gets the saved tag list.
+getting: The standby {node} does not yet have the new {files}.
+behind: The standby {node} has not got the {files}: {why}
+refused: The standby {node} cannot take over: {why}
 `;

@@ -679,4 +679,13 @@ saved(other): {count}곳을 확정했습니다. 이전 목록은 {kept}(으)로 
 undo: 되돌리기: {kept} …
 changed: 확정되지 않았습니다. 목록이 바뀌었습니다. 개수를 확인하고 다시 확정하세요.
 undone: 되돌렸습니다. {kept}이(가) 다시 적용됩니다.
+
+[standby]
+plant: 플랜트 파일
+tags: 태그 목록
+models: 모델
+none: 연결된 예비 서버가 없습니다. 예비 서버가 연결되면 저장된 태그 목록을 받습니다.
+getting: 예비 서버 {node}에 아직 새 파일이 없습니다: {files}.
+behind: 예비 서버 {node}이(가) 다음 파일을 받지 못했습니다({files}): {why}
+refused: 예비 서버 {node}이(가) 넘겨받을 수 없습니다: {why}
 `;

@@ -5,6 +5,7 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "corelink/core_instant.h"
+#include "corelink/core_tags.h"
 #include "message/json_fields.h"
 #include "net/http/http_impl.h"
 #include "net/http/site.h"
@@ -52,9 +53,11 @@ static int ready(struct server_context *server, struct http_exchange *request)
         return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "this node is being drained\n");
     if (render_service_ready(server->params.plant.render_service))
         return request_answer_text(request, HTTP_STATUS_OK,
-                                   !server->params.keeper           ? "ok\n"
-                                   : renderers_have_standby(server) ? "ok; a standby follows\n"
-                                                                    : "ok, but no standby follows: the log says why\n");
+                                   !server->params.keeper            ? "ok\n"
+                                   : !renderers_have_standby(server) ? "ok, but no standby follows: the log says why\n"
+                                   : renderers_standby_lacks_files(server)
+                                       ? "ok; a standby follows, but its models differ: the log says why\n"
+                                       : "ok; a standby follows\n");
     return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "the OpenGL context was lost; a new context is being created\n");
 }
 
@@ -171,6 +174,7 @@ static const struct {
     { "/api/v1/alarms", api_alarms, ROLE_VIEWER, 0 },
     { "/api/v1/alarms/journal", ask_journal, ROLE_VIEWER, NODE },
     { CORE_INSTANT_PATH, ask_instant, ROLE_ENGINEER, NODE },
+    { CORE_TAGS_PATH, ask_core_tags, ROLE_ENGINEER, NODE },
     { "/api/v1/devices", api_devices, ROLE_ENGINEER, 0 },
     { "/api/v1/import", api_import, ROLE_ENGINEER, 0 },
     { "/api/v1/import/report", api_import_report, ROLE_ENGINEER, 0 },

@@ -115,6 +115,7 @@ int ask_drift(struct server_context *server, struct http_exchange *request);
 int ask_gaps(struct server_context *server, struct http_exchange *request);
 int ask_journal(struct server_context *server, struct http_exchange *request);
 int ask_instant(struct server_context *server, struct http_exchange *request);
+int ask_core_tags(struct server_context *server, struct http_exchange *request);
 int ask_login(struct server_context *server, struct http_exchange *request);
 int ask_login_callback(struct server_context *server, struct http_exchange *request);
 int ask_logout(struct server_context *server, struct http_exchange *request);

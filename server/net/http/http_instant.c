@@ -1,9 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sends the readings of a past instant to renderers (daemons that draw for a core), which keep no history of their own. */
+/* Answers other daemons of the plant: sends the readings of a past instant to renderers, which keep no history of their own, and
+   the tag list to nodes that have an older one. */
 #include <stdlib.h>
+#include <string.h>
 
+#include "base/mem.h"
 #include "corelink/core_instant.h"
 #include "net/connection.h"
+#include "net/core_end.h"
 #include "net/http/http_impl.h"
 
 static const char BINARY[] = "application/octet-stream";
@@ -49,4 +53,13 @@ void answer_instant(struct server_context *server, struct http_exchange *request
     request_forget(server, request);
     request_answered(request, historical ? answer(server, request, &historical->snapshot) : request_answer_unreadable(server, request));
     snapshot_cache_give(cache, &historical);
+}
+
+int ask_core_tags(struct server_context *server, struct http_exchange *request)
+{
+    const char *list = server->params.plant.tag_list;
+    if (!core_end_leads(server) || !list)
+        return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE,
+                                   list ? "this core does not lead\n" : "the tag list could not be read: the log says why\n");
+    return request_answer(request, HTTP_STATUS_OK, "text/csv; charset=utf-8", mem_strdup(list), strlen(list), NULL, NULL);
 }

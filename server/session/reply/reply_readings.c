@@ -60,7 +60,7 @@ char *reply_tags_text(const struct plant *plant, const struct snapshot *snapshot
     return json_text(object, READING_DIGITS);
 }
 
-char *reply_status_text(const struct session_context *context, int64_t now_utc_ns)
+char *reply_status_text(const struct session_context *context, bool for_engineer, int64_t now_utc_ns)
 {
     json_t *links = json_array();
     for (size_t i = 0; i < context->plant->source_count; i++) {
@@ -78,6 +78,8 @@ char *reply_status_text(const struct session_context *context, int64_t now_utc_n
         json_object_set_new(status, "clock_error_ms", json_integer(clock_state_error_ms(&context->clock)));
     if (context->clock.leap_s)
         json_object_set_new(status, "leap_s", json_integer(context->clock.leap_s));
+    if (for_engineer && context->standby)
+        json_object_set(status, "standby", context->standby);
     return json_text(status, DIGITS);
 }
 

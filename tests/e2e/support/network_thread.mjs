@@ -56,10 +56,11 @@ export class Network {
         });
     }
 
-    // Opens a link to a port of this machine. Returns { port: where to connect, cut(), freeze(), mend() }.
+    // Opens a link to a port of this machine. Returns { port: where to connect, cut(), cutAnswers(), passAnswers(), freeze(), mend() }.
     async link(port, at = {}) {
         const { n, port: own } = await this.ask('link', port, at);
         return { port: own, cut: () => this.ask('set', n, 'cut'), freeze: () => this.ask('set', n, 'freeze'),
+            cutAnswers: () => this.ask('set', n, 'cutAnswers'), passAnswers: () => this.ask('set', n, 'passAnswers'),
             mend: () => this.ask('set', n, 'mend') };
     }
     tap(port, devicePort) { return this.ask('tap', port, devicePort); }

@@ -10,6 +10,7 @@ import { freePort } from './ports.mjs';
 const VERSIONS = '/usr/lib/postgresql';
 const FOLDER = existsSync(VERSIONS) && readdirSync(VERSIONS).map((version) => join(VERSIONS, version, 'bin'))
     .findLast((folder) => existsSync(join(folder, 'initdb')));
+const LONG_ANSWER_BYTES = 1000000;
 const NOBODY = 65534, sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 const as = process.getuid() === 0 ? { uid: NOBODY, gid: NOBODY } : {}; // PostgreSQL refuses to run as root
 const PASSWORD = 'not secret';
@@ -162,7 +163,7 @@ export class CuttableLink {
         link.sockets = new Set();
         link.server = createServer((near) => {
             const far = connect({ port, host: '127.0.0.1', localAddress: at.from });
-            let count = 0;
+            let count = 0, back = 0;
             if (link.isFrozen)
                 for (const socket of [near, far])
                     socket.pause();
@@ -173,7 +174,13 @@ export class CuttableLink {
             }
             if (link.isCut)
                 near.destroy();
-            far.on('data', (bytes) => near.write(bytes));
+            far.on('data', (bytes) => {
+                back += bytes.length;
+                if (link.cutsAnswers && back > LONG_ANSWER_BYTES)
+                    near.destroy();
+                else
+                    near.write(bytes);
+            });
             near.on('data', (bytes) => {
                 count += bytes.length;
                 // forwards half of these bytes and then cuts the link, so that the server gets only part of the message
@@ -195,6 +202,13 @@ export class CuttableLink {
         this.cuts = (this.cuts ?? 0) + 1;
         for (const socket of this.sockets)
             socket.destroy();
+    }
+    // From now on, closes each connection over which the target has sent a long answer, in the middle of the answer.
+    cutAnswers() {
+        this.cutsAnswers = true;
+    }
+    passAnswers() {
+        this.cutsAnswers = false;
     }
     freeze() {
         this.isFrozen = true;

@@ -3,6 +3,7 @@
 import { numberText } from '../../core/format.js';
 import { whyNotSaved } from '../../core/refusals.js';
 import { askPick, tellAsEngineer } from '../../core/requests.js';
+import { standbyText } from '../../core/standby.js';
 import { say } from '../../core/words.js';
 import { make, setText } from '../common/dom.js';
 import { fill } from '../common/widgets.js';
@@ -42,11 +43,12 @@ export class Placing {
         });
         this.gaps = make('div', { class: 'gaps' });
         this.note = make('p', { class: 'note', role: 'status' });
+        this.standby = make('p', { class: 'note', role: 'status' });
         this.dialog = make('dialog', { class: 'help diff', 'aria-label': say('eng.save') });
         this.element = make('div', { class: 'part' }, this.hint, this.find, this.list, this.accepting.element,
             make('h3', {}, say('eng.moves')), this.none, this.tried,
             make('div', { class: 'line' }, this.undo, this.back, button('eng.gaps', () => tellAsEngineer(this.session, 'gaps')), this.save),
-            this.note, this.gaps, this.dialog);
+            this.note, this.standby, this.gaps, this.dialog);
     }
 
     listen() {
@@ -56,6 +58,8 @@ export class Placing {
         session.on('gaps', (message) => this.showGaps(message));
         session.on('tags_diff', (message) => this.showDiff(message));
         session.on('tags_saved', (message) => this.onSaved(message));
+        session.on('status', () => this.showStandby());
+        this.showStandby();
         // the server refused a position: undoes it, so that the sensor is at its previous position again
         session.on('error', ({ about }) => { if (about === 'place') this.step(); });
         session.on('error', ({ about }) => { if (SAVING.includes(about)) this.stopSaving(); });
@@ -68,6 +72,10 @@ export class Placing {
         on('pointermove', (event) => this.drag(event));
         on('pointerup', (event) => this.drop(event));
         on('pointercancel', (event) => this.drop(event));
+    }
+
+    showStandby() {
+        setText(this.standby, standbyText(this.session.model?.standby));
     }
 
     // Sends the unsaved draft positions again after a reload of the plant.

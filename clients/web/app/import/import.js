@@ -2,6 +2,7 @@
 // The import panel: model and tag files, the plant's size next to a person's, and the matches of the tags.
 import { numberText } from '../../core/format.js';
 import { sizeOf, timesOf } from '../../core/matches.js';
+import { standbyText } from '../../core/standby.js';
 import { say } from '../../core/words.js';
 import { byId, make, setText } from '../common/dom.js';
 import { closeButton, fill } from '../common/widgets.js';
@@ -45,6 +46,7 @@ export class Import {
         this.report = new Report({ answer: (unit) => this.try(() => this.read({ what: 'anew', mesh_units: unit })) });
         this.build();
         page.session.greeted(() => this.greet());
+        page.session.on('status', () => this.showStandby());
         for (const name of ['dragover', 'drop'])
             document.addEventListener(name, (event) => this.drag(event));
     }
@@ -59,6 +61,7 @@ export class Import {
         this.files = make('ul', { class: 'files' });
         this.filesTitle = make('summary', {});
         this.phase = make('p', { class: 'phase', role: 'status' });
+        this.standby = make('p', { class: 'quiet', role: 'status' });
         this.wrong = make('p', { class: 'wrong', role: 'alert' });
         this.cancel = button('import.cancel', () => this.try(async () => {
             await this.exports.post('/cancel');
@@ -85,7 +88,7 @@ export class Import {
             make('header', {}, make('h2', {}, say('bar.import')), closeButton('import.close', () => this.toggle())),
             make('div', { class: 'part' },
                 make('section', {}, this.drop, this.filesFold,
-                    make('div', { class: 'line' }, this.phase, this.cancel, this.again), this.wrong),
+                    make('div', { class: 'line' }, this.phase, this.cancel, this.again), this.wrong, this.standby),
                 this.report.element, this.measures, this.source.element, this.table.element));
         byId('viewport').parentElement.append(this.element);
         // a drop zone for files, which covers the picture of a plant that has no model yet
@@ -131,9 +134,14 @@ export class Import {
         if (this.isNew && !this.open)
             this.toggle();
         this.showSize();
+        this.showStandby();
         this.exports.look();
         this.bringMatches();
         this.bringReport();
+    }
+
+    showStandby() {
+        setText(this.standby, standbyText(this.page.session.model.standby));
     }
 
     async bringReport() {

@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Transfers the tag list from the leading core to a standby or renderer over HTTP, and records that two cores have the same
+   list. Each function blocks; call them in one thread at a time. */
+#ifndef CORELINK_CORE_TAGS_H
+#define CORELINK_CORE_TAGS_H
+#include "base/system/http_request.h"
+#include "corelink/core_link.h"
+
+#define CORE_TAGS_PATH "/core/tags"
+
+/* Prepares the request for the tag list of the core that core_link_leader() names. The link may be freed afterwards. stop: flag
+   that ends the request soon. Returns false if there is no such core, or no memory. End with http_request_finish(). */
+bool core_tags_begin(struct http_request *request, struct core_link *link, const _Atomic bool *stop);
+/* Requests the tag list. Returns its text, if its hash (tag_file_hash()) is `hash`; free with mem_free(). Otherwise returns NULL
+   with the reason in *why (mem_free). */
+char *core_tags_get(struct http_request *request, const char *hash, char **why);
+
+/* Records in the history folder the hash of the tag list that leader and standby have in common, so that a list that somebody
+   edits on one of the two machines later is not overwritten. Returns 0 or -errno. */
+int core_tags_agree(const char *folder, const char *hash);
+/* Returns true if that record has this hash. */
+bool core_tags_agreed(const char *folder, const char *hash);
+
+#endif
