@@ -157,6 +157,56 @@ static double distance_of(const struct label_item *item, const struct label_box 
                  fmax(0, fmax(box->y - item->y, item->y - box->y - box->height)));
 }
 
+/* Returns how many rings a label covers: those whose square of 32 units the label overlaps. */
+static int covered_by(const struct label_item *items, int count, const struct label_box *box, double unit)
+{
+    int covered = 0;
+    for (int i = 0; i < count; i++)
+        covered += items[i].ring && box->x < items[i].x + 16 * unit && items[i].x - 16 * unit < box->x + box->width &&
+                   box->y < items[i].y + 16 * unit && items[i].y - 16 * unit < box->y + box->height;
+    return covered;
+}
+
+/* In small pictures full of rings, a call-out for all rings covers as few of them as any position of a grid of 4 units allows. */
+TEST(call_out_for_all_rings_covers_few)
+{
+    enum { COUNT = 60, ROUNDS = 200, WIDTH = 320, HEIGHT = 180 };
+    static struct label_item items[COUNT];
+    static struct label_place places[COUNT];
+    uint64_t seed = sweep_seed();
+    json_t *size = test_json(json_pack("[ii]", 130, 36));
+    int covering = 0;
+    for (int round = 0; round < ROUNDS; round++) {
+        int count = COUNT - round % 40;
+        struct label_area area = { .box = { 0, 0, WIDTH, HEIGHT }, .unit = 1, .measure = measure, .arg = size };
+        for (int i = 0; i < count; i++)
+            items[i] = (struct label_item){ .x = WIDTH * synthetic_random_unit(&seed),
+                                            .y = HEIGHT * synthetic_random_unit(&seed),
+                                            .width = 90,
+                                            .height = 20,
+                                            .depth_m = 1 + synthetic_random_unit(&seed),
+                                            .rank = LABEL_BEYOND,
+                                            .ring = true,
+                                            .held = LABEL_NONE,
+                                            .callout = LABEL_NONE,
+                                            .asset = LABEL_NONE };
+        labels_place(items, (size_t)count, &area, places);
+        if (places[0].slot <= 1000000)
+            continue;
+        int least = count, covered = covered_by(items, count, &places[0].box, 1);
+        for (int y = 0; y <= HEIGHT - 36; y += 4)
+            for (int x = 0; x <= WIDTH - 130; x += 4) {
+                int here = covered_by(items, count, &(struct label_box){ x, y, 130, 36 }, 1);
+                least = here < least ? here : least;
+            }
+        assert_int_equal(covered, least);
+        for (int i = 0; i < count; i++)
+            assert_true(distance_of(&items[i], &places[i].box) >= 13 || !labels_has_leader(items, places, (size_t)count, 1, (size_t)i));
+        covering++;
+    }
+    assert_true(covering > 10);
+}
+
 /* In random pictures, labels keep 10 units from the outer edge (15.5 units from the centre) of rings of other labels. Two labels of rings
    keep 8 units between them, and a label of rings is at most 60 units from one of them. Exempt is a call-out for all rings. */
 TEST(labels_keep_room_around_rings)

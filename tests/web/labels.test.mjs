@@ -58,17 +58,17 @@ test('labels cover no other label and no mark, lie inside, and important ones ar
 });
 
 // Checks the leader lines of a call-out. If one to four of its rings are within 60 units, each of these has a line; otherwise
-// only the nearest ring has.
+// only the nearest ring has. Rings that the call-out covers have none.
 function checkLeaders(members, placed) {
     const far = ({ id, x, y }) => {
         const [x1, y1, x2, y2] = leaderLine({ x, y, ...placed.get(id) }, placed.get(id), 0);
         return Math.hypot(x2 - x1, y2 - y1);
     };
-    const nearest = Math.min(...members.map(far)), most = members.filter((item) => far(item) <= 60).length > 4 ? nearest
-        : Math.max(60, nearest);
+    const open = members.filter((item) => far(item) >= 13), nearest = Math.min(...open.map(far));
+    const most = open.filter((item) => far(item) <= 60).length > 4 ? nearest : Math.max(60, nearest);
     for (const item of members)
-        assert.equal(placed.get(item.id).leads, far(item) <= most,
-            `a leader line is drawn only up to ${most}, the label is at ${far(item)}`);
+        assert.equal(placed.get(item.id).leads, far(item) >= 13 && far(item) <= most,
+            `a leader line is drawn only from 13 up to ${most}, the label is at ${far(item)}`);
 }
 
 const distance = ({ x, y }, { left, top, right, bottom }) => Math.hypot(Math.max(left - x, x - right, 0), Math.max(top - y, y - bottom, 0));
@@ -118,6 +118,48 @@ test('every alarm ring has a label or a call-out, within the picture, over no le
                 b.left - a.right >= apart || a.top - b.bottom >= apart || b.top - a.bottom >= apart));
         checkRoom(items, placed, boxes);
     }
+});
+
+// Returns the number of rings that a label covers: those whose square of 32 units the label overlaps.
+const coveredBy = (rings, { left, top, right, bottom }) =>
+    rings.filter(({ x, y }) => left < x + 16 && x - 16 < right && top < y + 16 && y - 16 < bottom).length;
+
+// Tries all positions one after the other, unlike the page.
+function fewestCovered(rings, { right, bottom }, legend, { width, height }) {
+    let least = Infinity;
+    const step = Math.max(4, Math.max(right, bottom) / 512);
+    for (let top = 0; top <= bottom - height; top += step) {
+        for (let left = 0; left <= right - width; left += step) {
+            const box = { left, top, right: left + width, bottom: top + height };
+            if (box.right <= legend.left || box.top >= legend.bottom)
+                least = Math.min(least, coveredBy(rings, box));
+        }
+    }
+    return least;
+}
+
+test('a call-out for all rings covers none if any place allows that, otherwise as few as possible, and has a leader line', () => {
+    const size = { width: 130, height: 36 }, found = { none: 0, some: 0 };
+    for (let round = 0; round < 300; round++) {
+        const [right, bottom] = [random(170, 560), random(110, 320)], legend = { left: right - 60, right, top: 0, bottom: bottom * 0.6 };
+        const items = Array.from({ length: 5 + Math.floor(random(0, round % 3 ? 40 : 200)) }, (_, id) => ({
+            id, x: random(0, right), y: random(0, bottom), width: 110, height: 20, rank: 3, ring: true, depth: random(1, 90),
+        }));
+        const placed = placeLabels(items, { area: { left: 0, top: 0, right, bottom }, blocked: [legend], rings: placeRings,
+            measure: () => size });
+        const [{ left, top, slot, callout }] = placed.values();
+        if (callout === undefined || [...placed.values()].some((place) => place.callout !== callout))
+            continue;
+        const box = { left, top, right: left + size.width, bottom: top + size.height };
+        const open = items.filter((item) => distance(item, box) >= 13), leads = items.filter(({ id }) => placed.get(id).leads);
+        assert.ok(leads.every((item) => open.includes(item)) && (leads.length > 0 || open.length === 0));
+        const covered = slot < 1000000 ? items.length - open.length : coveredBy(items, box);
+        const least = covered > 0 ? fewestCovered(items, { right, bottom }, legend, size) : 0;
+        assert.equal(slot === 1000000 ? Infinity : covered, least, `${covered} of ${items.length} rings in ${right} x ${bottom}`);
+        assert.ok(slot === 1000000 || box.right <= legend.left || box.top >= legend.bottom, 'the call-out covers no legend');
+        found[covered > 0 ? 'some' : 'none']++;
+    }
+    assert.ok(found.none > 10 && found.some > 10, JSON.stringify(found));
 });
 
 // Two cameras look at a plant of 60 sensors: one turns around it by a quarter of a degree per picture; one trembles by a

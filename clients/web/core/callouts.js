@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Places the labels of alarm rings (circles around markers of tags in alarm). Each ring gets its own label, or several rings that are close
 // together share one, a call-out (protocol/LABELS.md).
-import { awayFrom, boxAt, CLEARANCE, grow, hasArea, meets, SLOTS } from './labels.js';
+import { awayFrom, boxAt, CLEARANCE, grow, hasArea, HELD, meets, RING, SLOTS } from './labels.js';
 
 // Distances in CSS pixels (larger on a wall). Alarm rings closer than CLOSE get one label together. Rings that already share a label keep
 // it up to the distance STILL_CLOSE, so that labels do not flicker.
@@ -19,6 +19,11 @@ const STEP_X = 24, STEP_Y = 15, STEPS = 60;
 const FARTHEST = 60;
 // maximum number of times that CLOSE is multiplied by FARTHER; the result exceeds any picture
 const MOST_GROWTHS = 100;
+// A second, finer grid over the whole area has the positions at which a call-out for all rings may cover some rings. FINE: step of this
+// grid in CSS pixels (larger on a wall); MOST_FINE: maximum number of steps to each side, which limits the time. BLOCKED: weight of a
+// position at which the label covers a blocked box; more than the number of rings.
+const FINE = 4, MOST_FINE = 512, BLOCKED = 1e9;
+const FORCED = 1e6; // slot of a call-out that may cover anything; the next slots are the positions of the second grid, row by row
 
 const OFFSETS = []; // candidate positions for a label relative to the centre of its rings: [x, y, squared distance], nearest first
 for (let j = -STEPS; j <= STEPS; j++) {
@@ -85,14 +90,54 @@ function boxOf(one, slot, unit) {
     return { left, top, right: left + one.width, bottom: top + one.height };
 }
 
+// Returns the position on the second grid at which a label covers the fewest rings: { box, slot, covered }, or null if the label would
+// cover a blocked box or leave the area everywhere. The label covers no ring (covered: 0) if any position allows that. Of equal positions,
+// the nearest to the centre of the label's rings is chosen; the position of the previous picture counts as nearer than it is (HELD). add()
+// marks the positions at which the label overlaps a box in the four corners of their rectangle; sums over the table then give the weight
+// of each position. Therefore the time does not grow with the product of positions and rings.
+function leastCovering({ x, y, width, height, held }, rings, { area, unit, blocked }) {
+    const long = Math.max(area.right - area.left, area.bottom - area.top), step = Math.max(Math.min(FINE * unit, long), long / MOST_FINE);
+    const count = (room) => Math.min(MOST_FINE, Math.floor(room / step)) + 1; // 0 or less if the label is larger than the area
+    const columns = count(area.right - area.left - width), rows = count(area.bottom - area.top - height);
+    if (!(columns > 0 && rows > 0))
+        return null;
+    const sums = new Float64Array((columns + 1) * (rows + 1)), put = (i, j, weight) => { sums[j * (columns + 1) + i] += weight; };
+    const first = (low) => Math.max(0, Math.floor(low / step) + 1), end = (high, most) => Math.min(most, Math.ceil(high / step));
+    const add = ({ left, right, top, bottom }, weight) => {
+        const [i, k] = [first(left - area.left - width), end(right - area.left, columns)];
+        const [j, m] = [first(top - area.top - height), end(bottom - area.top, rows)];
+        if (i < k && j < m)
+            [[i, j, weight], [k, j, -weight], [i, m, -weight], [k, m, weight]].forEach((corner) => put(...corner));
+    };
+    blocked.forEach((box) => add(box, BLOCKED));
+    for (const ring of rings)
+        add(grow({ left: ring.x, right: ring.x, top: ring.y, bottom: ring.y }, (RING + CLEARANCE) * unit), 1);
+    let best = null, least = BLOCKED, nearest = Infinity;
+    for (let j = 0; j < rows; j++) {
+        for (let i = 0; i < columns; i++) {
+            const at = j * (columns + 1) + i, above = at - columns - 1;
+            sums[at] += (i > 0 ? sums[at - 1] : 0) + (j > 0 ? sums[above] : 0) - (i > 0 && j > 0 ? sums[above - 1] : 0);
+            const left = area.left + i * step, top = area.top + j * step;
+            const index = j * columns + i, factor = held === FORCED + 1 + index ? HELD * HELD : 1;
+            const away = factor * ((left + width / 2 - x) ** 2 + (top + height / 2 - y) ** 2);
+            if (sums[at] > least || (sums[at] === least && away >= nearest) || sums[at] >= BLOCKED)
+                continue;
+            [least, nearest] = [sums[at], away];
+            best = { box: { left, top, right: left + width, bottom: top + height }, slot: FORCED + 1 + index, covered: least };
+        }
+    }
+    return best;
+}
+
 const hasFiniteBox = ({ x, y, across, down, width, height }) => [x, y, across, down, width, height].every(Number.isFinite);
 const placeable = (items, area, unit) => (hasArea(area) && unit > 0 && unit < Infinity
     ? items.filter(({ x, y, width, height }) => [x, y, width, height].every(Number.isFinite)) : []);
 
-// Places labels. all: items with rings, the most important first; measure(members) returns { width, height } of their call-out; taken:
-// occupied space (labels.js); most: maximum number of labels. Returns [{ members, box, slot, leads }, ...]. Each item at a finite position
-// is a member of one label. leads: Set of those members of a call-out that have a leader line. In an area of 0x0 there are no labels.
-export function placeRings(all, { area, unit, taken, measure, most = MOST_GROUPS }) {
+// Places labels. all: items with rings that need labels, the most important first; measure(members) returns { width, height } of their
+// call-out; taken: occupied space (labels.js); blocked: boxes that labels must not cover; rings: all items with rings, by default `all`;
+// most: maximum number of labels. Returns [{ members, box, slot, leads }, ...]. Each item at a finite position is a member of one label.
+// leads: Set of those members of a call-out that have a leader line. In an area of 0x0 there are no labels.
+export function placeRings(all, { area, unit, taken, blocked = [], rings = all, measure, most = MOST_GROUPS }) {
     const order = placeable(all, area, unit);
     let lists, least = unit;
     const anchors = anchorsOf(order, most);
@@ -106,11 +151,13 @@ export function placeRings(all, { area, unit, taken, measure, most = MOST_GROUPS
     for (;;) {
         const out = [], lost = [], alone = groups.length === 1;
         for (const one of groups) {
-            const slot = find(one, out, alone);
-            if (slot === null)
-                lost.push(groups.indexOf(one));
+            const slot = find(one, out, alone), { members } = one;
+            if (slot !== null)
+                out.push({ members, slot, box: boxOf(one, slot, unit) });
+            else if (alone)
+                out.push({ members, ...(leastCovering(one, placeable(rings, area, unit), { area, unit, blocked }) ?? forced(one)) });
             else
-                out.push({ members: one.members, slot: Math.min(slot, 1e6), box: slot > 1e6 ? forced(one) : boxOf(one, slot, unit) });
+                lost.push(groups.indexOf(one));
         }
         if (lost.length === 0)
             return out.map(withLeads);
@@ -123,12 +170,13 @@ export function placeRings(all, { area, unit, taken, measure, most = MOST_GROUPS
     }
 
     // Chooses which members of a call-out have a leader line: those near its box, or only the nearest if none or too many are near. More or
-    // longer lines would hide the plant.
+    // longer lines would hide the plant. A ring that the call-out covers has no line.
     function withLeads(one) {
-        const { members, box } = one, far = members.map((item) => awayFrom(item, box));
-        const nearest = Math.min(...far), near = far.filter((distance) => distance <= FARTHEST * unit).length;
+        const { members, box } = one, far = members.map((item) => awayFrom(item, box)), open = far.filter((away) => away >= RING * unit);
+        const nearest = Math.min(...open), near = open.filter((away) => away <= FARTHEST * unit).length;
         const most = near > MOST_LEADS ? nearest : Math.max(FARTHEST * unit, nearest);
-        return members.length > 1 ? { ...one, leads: new Set(members.filter((_, i) => far[i] <= most)) } : one;
+        const leads = (_, i) => far[i] >= RING * unit && far[i] <= most;
+        return members.length > 1 ? { ...one, leads: new Set(members.filter(leads)) } : one;
     }
 
     // Returns whether a label's box is near a ring of a group.
@@ -137,8 +185,8 @@ export function placeRings(all, { area, unit, taken, measure, most = MOST_GROUPS
         return isNearRings && members.some((item) => awayFrom(item, box) <= FARTHEST * unit);
     }
 
-    // Returns the index in OFFSETS of a free position for a label. null: none is free nearby; Infinity: none is free, and there is no other
-    // label to merge with.
+    // Returns the slot of a free position for a label, or null if none is free. alone: the label is the only one, so that it may be far
+    // from its rings.
     function find(one, out, alone) {
         const isApart = (box) => !out.some((other) => meets(box, other.box));
         const free = (slot, more, over) => {
@@ -156,20 +204,18 @@ export function placeRings(all, { area, unit, taken, measure, most = MOST_GROUPS
                     return slot;
             }
         }
-        for (const over of alone ? [1, 2] : [1]) { // as a last resort, the label of a single ring may cover that ring
-            for (let n = 0; n < OFFSETS.length; n++) {
-                if (free(SLOTS.length + n, CLEARANCE * unit, over))
-                    return SLOTS.length + n;
-            }
+        for (let n = 0; n < OFFSETS.length; n++) {
+            if (free(SLOTS.length + n, CLEARANCE * unit, 1))
+                return SLOTS.length + n;
         }
-        return alone ? Infinity : null;
+        return null;
     }
 
-    // Returns the index in OFFSETS of a position inside the area, where the label may cover other things.
+    // Returns a position over the label's rings, moved as far into the area as possible: { slot, box }. The label may cover anything there.
     function forced(one) {
         const left = Math.max(area.left, Math.min(area.right - one.width, one.x - one.width / 2));
         const top = Math.max(area.top, Math.min(area.bottom - one.height, one.y - one.height / 2));
-        return { left, top, right: left + one.width, bottom: top + one.height };
+        return { slot: FORCED, box: { left, top, right: left + one.width, bottom: top + one.height } };
     }
 
     function nearest(i) {

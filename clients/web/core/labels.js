@@ -3,8 +3,10 @@
 
 // SPACINGS: minimum distances between labels, as fractions of the area's width, tried in this order; HELD: factor on spacing
 // and depth for labels of the previous picture, which makes them tend to stay
-const SPACINGS = [0.16, 0.08, 0], HELD = 0.8;
-const MARK = 5, RING = 13, NEAR_GAP = 8, DIAGONAL_GAP = 6, FAR_GAP = 22; // units
+const SPACINGS = [0.16, 0.08, 0];
+export const HELD = 0.8;
+const MARK = 5, NEAR_GAP = 8, DIAGONAL_GAP = 6, FAR_GAP = 22; // units
+export const RING = 13;                       // distance in units of a label from the centre of its own alarm ring
 // distance in units of labels from the centres of alarm rings that are not their own: 10 from the outer edge of the widest ring
 const OTHER_RING = 25.5;
 export const CLEARANCE = 3;
@@ -129,8 +131,8 @@ export function placeLabels(all, { area, unit = 1, blocked = [], rings = null, m
             return;
         }
     };
-    for (const { members, box, slot, leads } of
-        rings?.(order.filter((item) => item.rank === RANK_RING), { area, unit, taken, measure }) ?? []) {
+    const ringed = { area, unit, taken, blocked, rings: items.filter(({ ring }) => ring), measure };
+    for (const { members, box, slot, leads } of rings?.(order.filter((item) => item.rank === RANK_RING), ringed) ?? []) {
         const callout = members.length > 1 ? members[0].id : undefined;
         taken.add({ ...box, owner: members[0].id });
         for (const item of members) {

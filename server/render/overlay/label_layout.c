@@ -6,7 +6,7 @@
 
 #include "base/mem.h"
 
-static const double MARK_UNITS = 5, RING_UNITS = 13, NEAR_GAP = 8, DIAGONAL_GAP = 6, FAR_GAP = 22, CELL_UNITS = 96;
+static const double MARK_UNITS = 5, NEAR_GAP = 8, DIAGONAL_GAP = 6, FAR_GAP = 22, CELL_UNITS = 96;
 /* distance of labels from the centres of alarm rings that are not their own: 10 units from the outer edge of the widest ring */
 static const double OTHER_RING_UNITS = 25.5;
 
@@ -52,7 +52,7 @@ bool layout_meets(const struct label_box *a, const struct label_box *b)
 static bool meets_ring(const struct label_layout *layout, const struct label_box *box, int item, int group)
 {
     bool own = group != LABEL_NONE && layout->group_of[item] == group;
-    return layout_distance(&layout->items[item], box, 0, 0) < (own ? RING_UNITS : OTHER_RING_UNITS) * layout->area->unit;
+    return layout_distance(&layout->items[item], box, 0, 0) < (own ? LABEL_RING_UNITS : OTHER_RING_UNITS) * layout->area->unit;
 }
 
 bool layout_is_free(const struct label_layout *layout, const struct label_box *box, int owner, int group, enum label_over over)
@@ -78,7 +78,8 @@ struct label_box layout_box(const struct label_item *item, int slot, double unit
                                                    { -1, 1 },   { 1, -3.2 },  { -1, -3.2 }, { 1, 2.2 }, { -1, 2.2 } };
     bool diagonal = slot >= LABEL_FIRST_DIAGONAL && slot < LABEL_FIRST_FAR;
     double side = places[slot][0], gap = (diagonal ? DIAGONAL_GAP : slot < LABEL_FIRST_FAR ? NEAR_GAP : FAR_GAP) * unit;
-    double above = places[slot][1] < -0.5 ? -1 : places[slot][1] > -0.5 ? 1 : 0, more = item->ring ? (RING_UNITS - MARK_UNITS) * unit : 0;
+    double above = places[slot][1] < -0.5 ? -1 : places[slot][1] > -0.5 ? 1 : 0;
+    double more = item->ring ? (LABEL_RING_UNITS - MARK_UNITS) * unit : 0;
     double beside = across + gap + more;
     double x = side > 0 ? item->x + beside : side < 0 ? item->x - beside - item->width : item->x - item->width / 2;
     double rise = above * (more + down + (diagonal ? gap : 0));
@@ -113,7 +114,7 @@ void layout_init(struct label_layout *layout, const struct label_item *items, si
                  struct label_place *places)
 {
     double cell = CELL_UNITS * area->unit;
-    *layout = (struct label_layout){ .items = items, .area = area, .places = places };
+    *layout = (struct label_layout){ .items = items, .item_count = count, .area = area, .places = places };
     layout->columns = (int)(area->box.width / cell) + 1;
     layout->rows = (int)(area->box.height / cell) + 1;
     layout->heads = mem_array((size_t)layout->columns * (size_t)layout->rows, sizeof(*layout->heads));

@@ -8,7 +8,7 @@
 #include "base/mem.h"
 
 enum { PASSES = 3 };
-static const double SPACINGS[PASSES] = { 0.16, 0.08, 0 }, HELD_FACTOR = 0.8;
+static const double SPACINGS[PASSES] = { 0.16, 0.08, 0 };
 static const double MAX_COVERED_PART = 0.06;
 
 static bool is_held(const struct label_item *item)
@@ -18,7 +18,7 @@ static bool is_held(const struct label_item *item)
 
 static double order_depth(const struct label_item *item)
 {
-    return item->depth_m * (is_held(item) ? HELD_FACTOR : 1);
+    return item->depth_m * (is_held(item) ? LABEL_HELD_FACTOR : 1);
 }
 
 static int by_importance(const void *a, const void *b, void *arg)
@@ -81,7 +81,7 @@ static void place_rank(struct label_layout *layout, const int *order, size_t cou
         for (size_t i = 0; i < count; i++) {
             const struct label_item *item = &layout->items[order[i]];
             bool room = item->rank >= LABEL_BAD || layout->used < MAX_COVERED_PART * area->width * area->height;
-            double least = SPACINGS[pass] * area->width * (is_held(item) ? HELD_FACTOR : 1);
+            double least = SPACINGS[pass] * area->width * (is_held(item) ? LABEL_HELD_FACTOR : 1);
             if (room && layout->places[order[i]].slot == LABEL_NONE && is_apart(layout, item, least))
                 place(layout, order[i]);
         }
@@ -114,15 +114,18 @@ void labels_place(const struct label_item *items, size_t count, const struct lab
 
 bool labels_has_leader(const struct label_item *items, const struct label_place *places, size_t count, double unit, size_t i)
 {
-    double nearest = INFINITY, farthest = LABEL_FARTHEST * unit;
+    double nearest = INFINITY, farthest = LABEL_FARTHEST * unit, covered = LABEL_RING_UNITS * unit;
     int near = 0;
     if (places[i].callout == LABEL_NONE)
         return places[i].slot >= LABEL_FIRST_FAR;
     for (size_t k = 0; k < count; k++)
         if (places[k].callout == places[i].callout) {
             double distance = layout_distance(&items[k], &places[k].box, 0, 0);
+            if (distance < covered)
+                continue;
             nearest = fmin(nearest, distance);
             near += distance <= farthest;
         }
-    return layout_distance(&items[i], &places[i].box, 0, 0) <= (near > LABEL_MOST_LEADS ? nearest : fmax(nearest, farthest));
+    double distance = layout_distance(&items[i], &places[i].box, 0, 0);
+    return distance >= covered && distance <= (near > LABEL_MOST_LEADS ? nearest : fmax(nearest, farthest));
 }

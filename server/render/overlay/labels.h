@@ -49,7 +49,8 @@ struct label_place {
 void labels_place(const struct label_item *items, size_t count, const struct label_area *area, struct label_place *places);
 
 /* Returns whether a leader line connects item i with its label. places: from labels_place(). A call-out has leader lines to the rings near
-   it, or only to the nearest if none or too many are near: more or longer lines would hide the plant. */
+   it, or only to the nearest if none or too many are near: more or longer lines would hide the plant. Rings that the call-out covers have
+   none. */
 bool labels_has_leader(const struct label_item *items, const struct label_place *places, size_t count, double unit, size_t i);
 
 #endif

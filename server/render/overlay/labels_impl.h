@@ -4,6 +4,10 @@
 #define RENDER_OVERLAY_LABELS_IMPL_H
 #include "render/overlay/labels.h"
 
+/* slot of a call-out that may cover anything; the next slots are the positions of layout_cover_least(), row by row */
+enum { LABEL_FORCED = 1000000 };
+#define LABEL_RING_UNITS 13.0 /* least distance of a label from the centre of its own alarm ring, in units (pixels at 1280x720) */
+#define LABEL_HELD_FACTOR 0.8 /* factor on depths and distances of labels that were in the previous frame, so that they tend to stay */
 #define LABEL_CLEARANCE 3.0 /* free space required around a label that was not in the previous frame, in units (pixels at 1280x720) */
 
 /* Which occupied boxes a label may cover; each value includes the previous ones. Each box is stored with the smallest value that allows a
@@ -23,6 +27,7 @@ struct cell_entry {
 
 struct label_layout {
     const struct label_item *items;
+    size_t item_count;
     const struct label_area *area;
     struct label_place *places;
     int columns, rows, *heads; /* grid over the frame. heads: by grid cell, index of the cell's first occupied box; -1: the cell has none */
@@ -57,6 +62,10 @@ bool layout_is_free(const struct label_layout *layout, const struct label_box *b
    label for several alarm rings). slot: the label's position relative to the marker, as an index of the candidate positions; stored, so
    that the next frame tries it first. */
 void layout_set(struct label_layout *layout, const int *members, size_t count, const struct label_box *box, int slot);
+/* Finds the position of a call-out for all alarm rings at which it covers the fewest rings, and none if there is such a position. If every
+   position overlaps a blocked box, the call-out lies over its rings. group: centre and size of the call-out, and its slot in the previous
+   frame. Writes the call-out's box and returns its slot. */
+int layout_cover_least(const struct label_layout *layout, const struct label_item *group, struct label_box *box);
 /* Gives every item with an alarm ring a label of its own or adds it to a call-out, a label shared by several rings. order: indices of the
    items, most important first. */
 void layout_place_rings(struct label_layout *layout, const int *order, size_t count);

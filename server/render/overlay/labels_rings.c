@@ -16,7 +16,7 @@ static const double GROWTH = 1.25; /* factor by which CLOSE and STILL_CLOSE grow
 enum { MAX_GROUPS = 24 };
 /* Further positions for the label of a group of alarm rings, if none directly around the group is free: a grid around its
    centre, tried nearest first. STEP_X, STEP_Y: spacing in units (pixels at 1280x720); STEPS: number of steps to each side. */
-enum { STEP_X = 24, STEP_Y = 15, STEPS = 60, SIDE = 2 * STEPS + 1, OFFSETS = SIDE * SIDE, NOWHERE = -2, FORCED = 1000000 };
+enum { STEP_X = 24, STEP_Y = 15, STEPS = 60, SIDE = 2 * STEPS + 1, OFFSETS = SIDE * SIDE, NOWHERE = -2 };
 
 struct offset {
     int x, y, squared, index;
@@ -237,7 +237,6 @@ static bool is_free(const struct rings *rings, const struct ring_group *group, i
 static int find_slot(const struct rings *rings, const struct ring_group *group)
 {
     int held = group->item.held;
-    bool alone = rings->group_count == 1;
     double clearance = LABEL_CLEARANCE * rings->layout->area->unit;
     bool is_known = held >= 0 && held < LABEL_SLOTS + OFFSETS;
     if (is_known && is_near(rings, group, held) && is_free(rings, group, held, 0, OVER_MARKS))
@@ -245,22 +244,10 @@ static int find_slot(const struct rings *rings, const struct ring_group *group)
     for (int i = 0; i < 2 * LABEL_SLOTS; i++)
         if (is_free(rings, group, i % LABEL_SLOTS, clearance, i < LABEL_SLOTS ? OVER_NOTHING : OVER_MARKS))
             return i % LABEL_SLOTS;
-    /* if there is only one group, its label may at last cover alarm rings (OVER_RINGS) */
-    for (int over = OVER_MARKS; over <= (alone ? OVER_RINGS : OVER_MARKS); over++)
-        for (int slot = LABEL_SLOTS; slot < LABEL_SLOTS + OFFSETS; slot++)
-            if (is_free(rings, group, slot, clearance, (enum label_over)over))
-                return slot;
-    return alone ? FORCED : NOWHERE;
-}
-
-/* Returns the box of a group's label, centred on the group's rings and moved into the label area. The box may cover anything: it is used
-   only if no free position was found. */
-static struct label_box forced_box(const struct rings *rings, const struct ring_group *group)
-{
-    const struct label_box *area = &rings->layout->area->box;
-    double width = group->item.width, height = group->item.height;
-    return (struct label_box){ fmax(area->x, fmin(area->x + area->width - width, group->item.x - width / 2)),
-                               fmax(area->y, fmin(area->y + area->height - height, group->item.y - height / 2)), width, height };
+    for (int slot = LABEL_SLOTS; slot < LABEL_SLOTS + OFFSETS; slot++)
+        if (is_free(rings, group, slot, clearance, OVER_MARKS))
+            return slot;
+    return NOWHERE;
 }
 
 static double squared(double x)
@@ -293,10 +280,12 @@ static bool place_groups(struct rings *rings)
     for (size_t i = 0; i < rings->group_count; i++) {
         struct ring_group *group = &rings->groups[i];
         group->slot = find_slot(rings, group);
+        if (group->slot != NOWHERE)
+            group->box = box_at(rings, group, group->slot);
+        else if (rings->group_count == 1) /* there is no other group to merge with */
+            group->slot = layout_cover_least(rings->layout, &group->item, &group->box);
         group->mate = group->slot == NOWHERE ? nearest_to(rings, (int)i) : LABEL_NONE;
         all = all && group->slot != NOWHERE;
-        if (group->slot != NOWHERE)
-            group->box = group->slot == FORCED ? forced_box(rings, group) : box_at(rings, group, group->slot);
     }
     return all;
 }
