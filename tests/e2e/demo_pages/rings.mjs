@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Alarms in the picture: every alarm ring has a label or a call-out, however small the picture, and none of these covers a
-// legend. No ring covers a note. In a low picture, labels are few and small. Labels keep away from other rings and from each
-// other.
+// legend. No ring covers a note. In a low picture, labels are few, and on a phone small. Labels keep away from other rings and
+// from each other.
 import assert from 'node:assert/strict';
 import { before, test } from 'node:test';
 import { demo } from './demo.mjs';
@@ -15,6 +15,7 @@ const options = { skip: why ?? false, timeout: 200000 };
 const SCREENS = {
     phone: PHONE,
     'phone across': { ...PHONE, viewport: { width: 844, height: 390 } },
+    'low desk': { viewport: { width: 1280, height: 420 } },
     'far wall': { viewport: { width: 1920, height: 1080 }, query: '?wall=85,8' },
     ...sweep({
         'desk at 200 %': { viewport: { width: 640, height: 400 }, deviceScaleFactor: 2 },
@@ -22,6 +23,7 @@ const SCREENS = {
         wall: { viewport: { width: 1920, height: 1080 }, query: '?wall=55,4' },
     }, {}),
 };
+const SHORT = ['phone across', 'desk at 200 %']; // screens whose labels are short
 // Tags beyond their limits: close together on one machine, hidden behind something, and far from all others.
 const ALARMS = ['TE-161', 'TE-162', 'TE-164', 'VT-161', 'VT-162', 'VT-163', 'VT-164', 'TE-151', 'TE-152',
     'TE-211', 'TE-212', 'TE-171', 'TE-101'];
@@ -62,7 +64,8 @@ const look = (page) => page.evaluate(() => {
     return {
         stems: stems.length, raised: stems.filter((stem) => !isBelow(stem)).length,
         pins: pins.filter(({ width }) => width > 0).length, hidden: rings.filter(hides).length,
-        few: !overlay.isLow || (boxes.size <= 6 && share < 0.06),
+        few: !overlay.isLow || (boxes.size <= 9 && share < 0.1), small: !overlay.isShort || (boxes.size <= 6 && share < 0.06),
+        isShort: overlay.isShort, lines: overlay.callouts.lines(rings).lines.length,
         rings: rings.length, without: rings.filter((ring) => !placeOf(ring)).map(({ tag }) => tag.name), over: over.length,
         callouts: new Set(rings.map((ring) => placeOf(ring)?.callout).filter((id) => id !== undefined)).size,
     };
@@ -109,12 +112,12 @@ for (const [name, { query = '', ...screen }] of Object.entries(SCREENS))
                 await page.evaluate((id) => globalThis.plantcast.session.setParams({ group: id }), group);
                 await settle(page);
                 await becomes(async () => {
-                    const { rings, callouts, ...seen } = await look(page);
+                    const { rings, callouts, isShort, lines, ...seen } = await look(page);
                     const { close, together, lone, longest } = await crowded(page);
                     t.diagnostic(`${group}: ${rings} rings, ${callouts} call-outs, longest leader line ${longest}`);
-                    return { ...seen, callouts: callouts > 0, close, together, tooLong: longest > 60 && !lone };
-                }, { pins: 2, stems: 2, hidden: 0, without: [], over: 0, raised: 0, few: true, callouts: true, close: [],
-                    together: [], tooLong: false });
+                    return { ...seen, callouts: callouts > 0, close, together, tooLong: longest > 60 && !lone, isShort, lines };
+                }, { pins: 2, stems: 2, hidden: 0, without: [], over: 0, raised: 0, few: true, small: true, callouts: true, close: [],
+                    together: [], tooLong: false, isShort: SHORT.includes(name), lines: SHORT.includes(name) ? 1 : 2 });
             }
             await shoot(page, `rings-${name.replace(/\W+/g, '-')}`);
             assert.deepEqual(errors, []);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Call-outs: two-line labels next to alarm rings (circles around the markers of tags in alarm). Rings that are close together share one
-// call-out. In a low picture, call-outs have one line and are few. Also makes the labels of alarms whose reading is bad.
+// call-out. In a low picture, call-outs are few; on phones and tablets, they then have one line. Also makes the labels of alarms whose
+// reading is bad.
 import { graver } from '../../core/alarms.js';
 import { placeRings } from '../../core/callouts.js';
 import { say } from '../../core/words.js';
@@ -8,13 +9,16 @@ import { heldSince } from './alarm_bar.js';
 import { INK, INK_2, LABEL_HEIGHT } from '../viewport/overlay.js';
 
 const LINE = 16; // line height, in units
-const MOST_LOW = 6; // maximum number of alarm labels in a low picture
+// Maximum number of alarm labels in a low picture: one for each ROOM square units, but at least LEAST_LOW. The maximum of all pictures,
+// 24, is one for each ROOM of 1280 x 720 units.
+const ROOM = 38400, LEAST_LOW = 6;
 
 const byGravity = (a, b) => graver(a.alarm, b.alarm) || a.tag.index - b.tag.index;
 
 export class Callouts {
     constructor({ overlay, session, refresh }) {
-        const place = (items, options) => placeRings(items, { ...options, ...(overlay.isLow ? { most: MOST_LOW } : {}) });
+        const most = () => Math.max(LEAST_LOW, Math.floor((overlay.wide * overlay.high) / ROOM));
+        const place = (items, options) => placeRings(items, { ...options, ...(overlay.isLow ? { most: most() } : {}) });
         Object.assign(this, { overlay, session, place });
         overlay.callouts = this;
         refresh();
@@ -28,15 +32,15 @@ export class Callouts {
     }
 
     // Returns the lines of a call-out for several alarms, in the format of the overlay's labels. The first line names the equipment with
-    // the most alarms, if it has several, and the number of the others. The second line names the most urgent alarm. In a low picture,
-    // there is only one line.
+    // the most alarms, if it has several, and the number of the others. The second line names the most urgent alarm. Short call-outs
+    // (isShort in overlay.js) have only one line.
     lines(members) {
         const [worst] = [...members].sort(byGravity), { model } = this.session, counts = new Map();
         for (const { tag } of [...members].sort((a, b) => a.tag.index - b.tag.index))
             counts.set(tag.asset, (counts.get(tag.asset) ?? 0) + 1);
         const [[most, many]] = [...counts].sort((a, b) => b[1] - a[1]), others = counts.size > 1 ? ` +${counts.size - 1}` : '';
         const where = most && many > 1 ? `${model.asset(most)?.tag || most}${others}` : '';
-        if (this.overlay.isLow) {
+        if (this.overlay.isShort) {
             const count = where ? `×\u2009${members.length}` : `+${members.length - 1}`;
             const first = [[where || worst.tag.name, 400, INK_2], [count, 650, INK], [worst.alarm.kind, 700, null]];
             return { alarm: worst.alarm, lines: [first] };

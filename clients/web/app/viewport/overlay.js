@@ -7,14 +7,16 @@ import { changeText, decimalsFor, numberText, unitText } from '../../core/format
 import { halves } from '../../core/split_view.js';
 import { FIRST_FAR, leaderLine, MOST_BAD, placeLabels, RANK_RING } from '../../core/labels.js';
 import { say } from '../../core/words.js';
+import { phone } from '../common/dom.js';
 
 export const INK = '#1d252d';
 export const INK_2 = '#4d5964', ACCENT = '#2a5f8f';
 export const LABEL_HEIGHT = 20;
 const PADDING = 6, NAMES_UP_TO = 24, RING_RADIUS = 10;
-// in a picture lower than this (in CSS pixels, not on walls), alarm labels are few and short, so that the plant stays visible
+// in a picture lower than this (in CSS pixels, not on walls), alarm labels are few, so that the plant stays visible
 const LOW_PICTURE = 340;
-const LONG_UP_TO = 3; // maximum number of alarm labels with a value in a low picture
+const LONG_UP_TO = 3; // maximum number of alarm labels with a value in a low picture on a phone or tablet
+const touchScreen = globalThis.matchMedia?.('(pointer: coarse)');
 
 const SHAPES = {
     good: (c, r) => c.arc(0, 0, r, 0, 2 * Math.PI),
@@ -69,6 +71,12 @@ export class Overlay {
 
     get isLow() {
         return this.unit === 1 && this.high < LOW_PICTURE;
+    }
+
+    // Returns whether alarm labels are short: in a low picture on a phone or tablet. A low window on a desk has room for whole labels,
+    // because such a window is wide.
+    get isShort() {
+        return this.isLow && Boolean(phone?.matches || touchScreen?.matches);
     }
 
     // Computes the positions of the shown group's sensors in the picture on the screen.
@@ -209,7 +217,7 @@ export class Overlay {
         marks.sort((a, b) => a.tag.index - b.tag.index || a.half - b.half);
         const tooMany = inSight.filter(({ reading }) => reading.quality === 'bad').length > MOST_BAD;
         const named = inSight.length <= NAMES_UP_TO;
-        const short = this.isLow && marks.filter(({ alarm }) => alarm).length > LONG_UP_TO;
+        const short = this.isShort && marks.filter(({ alarm }) => alarm).length > LONG_UP_TO;
         return marks.map((marker) => {
             const { tag, reading } = marker, id = `${tag.index}/${marker.half}`;
             const { alarm } = marker;
