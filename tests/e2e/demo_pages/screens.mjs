@@ -459,6 +459,13 @@ test('phones: a trend\'s chart is readable, its table fits, and the picture stay
         await shoot(page, `phone-trend-${name}`);
         const hidden = await page.locator('.trends .scroll').evaluate((e) => e.scrollWidth - e.clientWidth);
         assert.ok(hidden <= 0, `${name}: ${hidden} px of the table are hidden`);
+        const cut = () => page.evaluate(() => {
+            const [table, note] = ['.trends .scroll', '#trend-note'].map((one) => document.querySelector(one).getBoundingClientRect());
+            const rows = [...document.querySelectorAll('#trend-tags tr')].map((row) => row.getBoundingClientRect());
+            return { rows: rows.filter(({ top, bottom }) => top < table.bottom - 1 && bottom > table.bottom + 1).length,
+                seen: rows.filter(({ bottom }) => bottom <= table.bottom + 1).length, isNear: note.top < table.bottom + 3 };
+        });
+        await becomes(cut, { rows: 0, seen: 3, isNear: false }, `${name}: the table ends with a row, above the note`);
     }
 }));
 
