@@ -288,6 +288,25 @@ test('in forced colours active and returned alarms still look different', option
     assert.deepEqual(looks, [1, 2, 3, 4].flatMap(() => [`${ink},${ground},none,none,none`, `${ground},${ink},dashed,none,none`]));
 });
 
+test('with forced colours, the theme is that of the system, whatever the address and the browser\'s storage say', options, async () => {
+    for (const scheme of ['dark', 'light']) {
+        const other = await openPage(`${plant.url}?theme=${scheme === 'dark' ? 'light' : 'dark'}`,
+            { viewport: { width: 1280, height: 800 }, forcedColors: 'active', colorScheme: scheme });
+        await waitForPicture(other.page);
+        assert.equal(await other.page.evaluate(() => document.documentElement.dataset.theme), scheme);
+        const [chosen, ...grounds] = await other.page.locator('#groups input').evaluateAll((all) => [...all]
+            .sort((a, b) => b.checked - a.checked).map((input) => getComputedStyle(input.nextElementSibling).backgroundColor));
+        const highlight = await other.page.evaluate(() => {
+            const element = document.createElement('i');
+            Object.assign(element.style, { forcedColorAdjust: 'none', color: 'Highlight' });
+            document.body.append(element);
+            return getComputedStyle(element).color;
+        });
+        assert.ok(chosen === highlight && !grounds.includes(highlight), `background of the chosen quantity: ${chosen}, ${grounds}`);
+        await other.close();
+    }
+});
+
 // The list's rows that lie completely within its panel.
 const wholeRows = () => page.evaluate(() => {
     const { bottom } = document.getElementById('alarms-now').getBoundingClientRect();

@@ -11,7 +11,11 @@ export function wear(theme) {
     return theme;
 }
 
-// Sets the theme: from ?theme=dark or ?theme=light in the URL, else the stored theme. Returns the theme.
+// Sets the theme: with forced colours that of the operating system, because pictures and charts are drawn in the theme's colours, over the
+// system's background; otherwise from ?theme=dark or ?theme=light in the URL, else the stored theme. Returns the theme.
 export function chooseTheme(query) {
+    const has = (feature) => Boolean(globalThis.matchMedia?.(feature).matches);
+    if (has('(forced-colors: active)'))
+        return wear(has('(prefers-color-scheme: dark)') ? 'dark' : 'light');
     return wear((query.get('theme') ?? stored('theme')) === 'dark' ? 'dark' : 'light');
 }
