@@ -591,6 +591,37 @@ test('phones: names and states are readable and complete, and controls are finge
     await becomes(() => tooSmall(page), [], 'trend');
 }));
 
+test('in a low window of a desk, no part of the page lies over another', options, () => withPage(
+    { viewport: { width: 1280, height: 420 } }, async (page) => {
+        const meet = (one, other) => page.evaluate((both) => {
+            const [a, b] = both.map((name) => document.querySelector(name).getBoundingClientRect());
+            return a.width > 0 && b.width > 0 && a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
+        }, [one, other]);
+        await page.evaluate(() => globalThis.plantcast.session.setParams({ split: { group: 'pressure' } }));
+        await page.locator('#split-bar').waitFor();
+        await visible(page, '#legend-right');
+        await becomes(() => meet('#legend-right', '#split-bar'), false, 'the right half\'s legend ends above the bar');
+        await page.evaluate(() => globalThis.plantcast.session.setParams({ split: null }));
+        await ask(page, 'showTrend');
+        await page.locator('#trends .drop').first().waitFor();
+        await page.evaluate(() => document.getElementById('time-toggle').click());
+        await visible(page, '#time-slider');
+        const [box, trends] = await Promise.all(['#assets', '#trends'].map((one) => boxOf(page, one)));
+        assert.ok(box.y + box.height <= trends.y + 1 && await page.locator('#assets').evaluate((e) => getComputedStyle(e).overflow) ===
+            'hidden', 'the list of equipment does not stick out over the trend');
+        await hidden(page, '.timeline .line');
+    }));
+
+test('on a tablet, the buttons of a sensor\'s card are complete', options, () => withPage(
+    { ...TABLET, viewport: { width: 768, height: 1024 } }, async (page) => {
+        await ask(page, 'selectTag');
+        await page.locator('#card .trends-of button').first().waitFor();
+        await becomes(async () => {
+            const [card, button] = await Promise.all(['#card', '#card .trends-of button >> nth=0'].map((one) => boxOf(page, one)));
+            return button.y + button.height <= card.y + card.height && button.height >= 43.5;
+        }, true);
+    }));
+
 test('at 200 % zoom the engineering panel is as high as the picture, and both fill the stage', options, () => withPage(
     { viewport: { width: 640, height: 400 } }, async (page) => {
         await page.locator('#engineer-toggle').click();
