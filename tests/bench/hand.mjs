@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Measures how soon the page reacts to the user's hand: sends real pointer events to Chromium, which shows the demo plant over
+// Measures how soon the page reacts to the user's hand: sends real pointer events to a browser that shows the demo plant over
 // a simulated slow link. Prints one JSON object per measured quantity. Arguments: WIDTHxHEIGHT, CODEC (auto), ROUND_TRIP_MS
 // (0), BYTES_PER_S of the link (0: no limit). Without arguments, measures each link of LINKS in turn and prints a table that
-// compares the results with their goals.
-import { createRequire } from 'node:module';
+// compares the results with their goals. --browser: chromium, firefox or webkit. --throttle: factor by which Chromium slows the
+// page's main thread down, like a phone. --ratio: device pixels per CSS pixel.
+import { loadavg } from 'node:os';
 import { setTimeout as sleep } from 'node:timers/promises';
+import { parseArgs } from 'node:util';
+import { drive, missingBrowser } from '../e2e/support/drivers.mjs';
 import { missing, startPlant } from '../e2e/support/plant.mjs';
 import { cpuMs, family } from '../e2e/support/processes.mjs';
 import { Relay, relayMissing } from '../e2e/support/relay.mjs';
 
-const { chromium } = createRequire(new URL('../e2e/package.json', import.meta.url))('playwright-core');
+const { values: OPTIONS, positionals: GIVEN } = parseArgs({ allowPositionals: true, options: {
+    browser: { type: 'string', default: 'chromium' }, throttle: { type: 'string', default: '1' },
+    ratio: { type: 'string', default: '1' } } });
 // Links and their goals: size, codec, round trip in ms, bytes per second (0: no limit); largest time from a pointer event to
 // the first changed pixel (95th percentile, ms), and smallest number of picture updates per second while dragging.
 const LINKS = [['1280x720', 'jpeg', 0, 0, 34, 55], ['1280x720', 'jpeg', 50, 0, 34, 55], ['1280x720', 'jpeg', 200, 0, 34, 55],
@@ -18,7 +23,6 @@ const LINKS = [['1280x720', 'jpeg', 0, 0, 34, 55], ['1280x720', 'jpeg', 50, 0, 3
 const BROWSER_MS = 25; // goal: largest processor time (ms) that the browser may use per picture update
 let width, height, name, results; // data of the link being measured: size of the picture in pixels, name in the printed rows, results
 const SECONDS = Number(process.env.SECONDS) || 5, TRIES = Number(process.env.TRIES) || 20, HZ = 60, CALM_MS = 400;
-const ARGS = ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking'];
 function say(what, value, unit, more = {}) {
     console.log(JSON.stringify({ name: `${name}_${what}`, value, unit, ...more }));
     results[what] = more.p95 ?? value;
@@ -26,12 +30,19 @@ function say(what, value, unit, more = {}) {
 const round = (x) => Math.round(10 * x) / 10;
 const rank = (values, share) => round([...values].sort((a, b) => a - b)[Math.min(values.length - 1, Math.floor(share * values.length))]);
 
-// Runs in the page: records when pointer events happened, when the picture on the screen changed, and which frames were drawn.
+// Runs in the page: records when pointer events happened, when the picture on the screen changed, and which frames of the
+// server were drawn. While hand.reads, counts animation frames.
 function record() {
-    const hand = globalThis.hand = { events: [], changes: [], frames: [], reads: false };
+    const hand = globalThis.hand = { events: [], changes: [], frames: [], reads: false, count: 0 };
     const { session, viewport } = globalThis.plantcast, { drawn } = session, { onDrawn } = viewport, small = new OffscreenCanvas(160, 90);
     const context = small.getContext('2d', { willReadFrequently: true });
-    addEventListener('pointermove', ({ timeStamp }) => hand.events.push(timeStamp), { capture: true, passive: true });
+    const count = () => {
+        hand.count++;
+        if (hand.reads)
+            requestAnimationFrame(count);
+    };
+    hand.start = () => requestAnimationFrame(count);
+    addEventListener('pointermove', ({ timeStamp: at }) => hand.events.push({ at, count: hand.count }), { capture: true, passive: true });
     session.drawn = (frame, ...rest) => {
         drawn.call(session, frame, ...rest);
         hand.frames.push({ at: performance.now(), last: frame.cameraSeq === session.cameraSeq && !session.cameraNews });
@@ -46,7 +57,7 @@ function record() {
         const pixels = new Uint32Array(context.getImageData(0, 0, small.width, small.height).data.buffer);
         const hash = pixels.reduce((sum, pixel) => (Math.imul(sum, 31) + pixel) | 0, 0);
         if (hash !== before)
-            hand.changes.push(performance.now());
+            hand.changes.push({ at: performance.now(), count: hand.count });
         before = hash;
     };
 }
@@ -56,8 +67,11 @@ const look = (page) => page.evaluate(() => {
     const { picture, size: { width: w }, cameraSeq } = globalThis.plantcast.session;
     return { events, changes, frames, rests: picture.still && picture.fullWidth === w && picture.cameraSeq === cameraSeq };
 });
-const clear = (page, reads) => page.evaluate((on) =>
-    Object.assign(globalThis.hand, { events: [], changes: [], frames: [], reads: on }), reads);
+const clear = (page, reads) => page.evaluate((on) => {
+    if (on && !globalThis.hand.reads)
+        globalThis.hand.start();
+    Object.assign(globalThis.hand, { events: [], changes: [], frames: [], reads: on });
+}, reads);
 
 async function rest(page) {
     for (let before = -1, now = 0; now !== before || now < 0;) {
@@ -69,12 +83,14 @@ async function rest(page) {
 }
 
 // Moves the mouse, with its button pressed, in a circle for that many seconds, without waiting for the page.
-async function circle(page, pointer, seconds) {
-    const began = performance.now(), count = seconds * HZ;
-    for (let n = 1; n <= count; n++) {
+async function circle(page, seconds) {
+    const began = performance.now(), count = seconds * HZ, reach = Math.min(150, width / 3);
+    for (let n = 1, last; n <= count; n++) {
         const angle = 2 * Math.PI * n / (3 * HZ);
-        pointer('mouseMoved', width / 2 + 150 * Math.sin(angle), height / 2 + 100 * (1 - Math.cos(angle)) / 2);
+        last = page.pointer('mouseMoved', width / 2 + reach * Math.sin(angle), height / 2 + 100 * (1 - Math.cos(angle)) / 2);
         await sleep(Math.max(0, began + n * 1000 / HZ - performance.now()));
+        if (n === count)
+            await last;
     }
 }
 
@@ -86,37 +102,39 @@ const cpuOf = (pids) => pids.reduce((sum, pid) => {
     }
 }, 0);
 
-async function measure(page, browserPid, daemonPid) {
-    const client = await page.context().newCDPSession(page);
-    const pointer = (type, x, y) => client.send('Input.dispatchMouseEvent', { type, x, y, button: 'left', buttons: 1, clickCount: 1 });
+async function measure(page, daemonPid) {
     await page.evaluate(record);
-    await page.mouse.move(width / 2, height / 2);
+    await page.pointer('mouseMoved', width / 2, height / 2);
     await clear(page, true);
-    await pointer('mousePressed', width / 2, height / 2);
-    await circle(page, pointer, 2); // unmeasured drag, so that the page has loaded everything that it loads lazily at the first drag
-    const firsts = [];
+    await page.pointer('mousePressed', width / 2, height / 2);
+    await circle(page, 2); // unmeasured drag, so that the page has loaded everything that it loads lazily at the first drag
+    const how = await page.evaluate(() => globalThis.plantcast.viewport.warp?.painter.constructor.name ?? null);
+    const firsts = [], counts = [];
     for (let n = 0; n < TRIES; n++) {
         await rest(page);
         await clear(page, true);
-        await pointer('mouseMoved', width / 2 + 20 * (1 + n % 2), height / 2 + n);
-        await page.waitForFunction(() => globalThis.hand.changes.some((at) => at > globalThis.hand.events[0]));
-        const { events, changes } = await look(page);
-        firsts.push(changes.find((at) => at > events[0]) - events[0]);
+        await page.pointer('mouseMoved', width / 2 + 20 * (1 + n % 2), height / 2 + n);
+        await page.wait(() => globalThis.hand.changes.some(({ at }) => at > globalThis.hand.events[0].at));
+        const { events: [event], changes } = await look(page), change = changes.find(({ at }) => at > event.at);
+        firsts.push(change.at - event.at);
+        counts.push(change.count - event.count);
     }
     say('first_pixel_ms', rank(firsts, 0.5), 'ms', { p95: rank(firsts, 0.95) });
+    say('first_pixel_frames', rank(counts, 0.5), 'animation frames', { p95: rank(counts, 0.95), painter: how, load: round(loadavg()[0]) });
     await clear(page, true);
-    await circle(page, pointer, SECONDS);
+    await circle(page, SECONDS);
     const seen = await look(page);
     say('seen_per_s', round(seen.changes.length / SECONDS), '1/s');
     say('pictures_per_s_read', round(seen.frames.length / SECONDS), '1/s');
-    await page.waitForFunction(() => globalThis.hand.frames.some(({ last, at }) => last && at > globalThis.hand.events.at(-1)));
+    await page.wait(() => globalThis.hand.frames.some(({ last, at }) => last && at > globalThis.hand.events.at(-1).at));
     const { frames, events } = await look(page);
-    say('last_picture_ms', round(frames.find(({ last, at }) => last && at > events.at(-1)).at - events.at(-1)), 'ms');
+    const end = events.at(-1).at;
+    say('last_picture_ms', round(frames.find(({ last, at }) => last && at > end).at - end), 'ms');
     await clear(page, false);
-    const pids = family(browserPid), begun = cpuOf(pids), served = cpuMs(daemonPid), from = performance.now();
+    const pids = family(page.pid), begun = cpuOf(pids), served = cpuMs(daemonPid), from = performance.now();
     const updates = () => page.evaluate(() => globalThis.plantcast.viewport.warp?.updates ?? globalThis.hand.frames.length);
     const before = await updates();
-    await circle(page, pointer, SECONDS);
+    await circle(page, SECONDS);
     const pictures = (await look(page)).frames.length, drawn = await updates() - before, seconds = (performance.now() - from) / 1000;
     const cpu = cpuOf(pids) - begun;
     say('pictures_per_s', round(pictures / seconds), '1/s');
@@ -124,16 +142,16 @@ async function measure(page, browserPid, daemonPid) {
     say('cpu_per_picture_ms', round(cpu / pictures), 'ms of a processor');
     say('cpu_per_update_ms', round(cpu / drawn), 'ms of a processor');
     say('cores', round(cpu / seconds / 100) / 10, 'cores', { server: round((cpuMs(daemonPid) - served) / seconds / 100) / 10 });
-    await pointer('mouseReleased', width / 2, height / 2);
+    await page.pointer('mouseReleased', width / 2, height / 2);
     if (process.env.SHOT)
-        await page.screenshot({ path: process.env.SHOT });
+        await page.shoot(process.env.SHOT);
 }
 
 async function run(size, codec = 'auto', roundTripMs = 0, bytesPerS = 0) {
-    name = `hand_${size}_${codec}_${roundTripMs}ms${Number(bytesPerS) === 0 ? '' : `_${bytesPerS}Bps`}`;
+    name = `hand_${OPTIONS.browser}_${size}_${codec}_${roundTripMs}ms${Number(bytesPerS) === 0 ? '' : `_${bytesPerS}Bps`}`;
     results = {};
     [width, height] = size.split('x').map(Number);
-    const why = missing() ?? relayMissing();
+    const why = missing() ?? relayMissing() ?? missingBrowser(OPTIONS.browser);
     if (why) {
         say('seen_per_s', null, '1/s', { why });
         return;
@@ -141,26 +159,26 @@ async function run(size, codec = 'auto', roundTripMs = 0, bytesPerS = 0) {
     const plant = await startPlant();
     const port = Number(new URL(plant.url).port);
     const relay = await Relay.open(port, { bytesPerS: Number(bytesPerS), delayMs: Number(roundTripMs) / 2 });
-    const server = await chromium.launchServer({ executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium', args: ARGS });
+    const page = await drive(OPTIONS.browser, width + 300, height + 200, Number(OPTIONS.ratio));
     try {
-        const browser = await chromium.connect(server.wsEndpoint());
-        const page = await browser.newPage({ viewport: { width: width + 300, height: height + 200 } });
         await page.goto(`http://127.0.0.1:${Number(roundTripMs) + Number(bytesPerS) === 0 ? port : relay.port}/?codec=${codec}`);
-        await page.waitForFunction(() => globalThis.plantcast?.session.picture);
+        await page.wait(() => Boolean(globalThis.plantcast?.session.picture));
         // sets the picture's size in CSS pixels to the measured size; the window is larger than the picture
         await page.evaluate(([w, h]) => Object.assign(document.getElementById('viewport').style,
             { position: 'fixed', inset: '0 auto auto 0', width: `${w}px`, height: `${h}px`, zIndex: 9 }), [width, height]);
         await plant.freeze((await (await fetch(`${plant.url}api/v1/tags`)).json()).tags.map((tag) => tag.name));
-        await measure(page, server.process().pid, plant.pid);
+        if (OPTIONS.throttle !== '1')
+            await page.throttle(Number(OPTIONS.throttle));
+        await measure(page, plant.pid);
     } finally {
-        await server.close();
+        await page.close();
         relay.close();
         await plant.stop();
     }
 }
 
-if (process.argv.length > 2) {
-    await run(...process.argv.slice(2));
+if (GIVEN.length > 0) {
+    await run(...GIVEN);
 } else {
     const rows = [], met = (value, isMet) => `${value ?? '–'} ${isMet ? '(met)' : '(not met)'}`;
     for (const [size, codec, roundTripMs, bytesPerS, pixelMs, rate] of LINKS) {
