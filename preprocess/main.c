@@ -181,9 +181,9 @@ static bool run_distances(const struct prep_options *options, struct log *log, s
     struct prepare prepare;
     int asset = plant_find_asset(plant, options->asset), tag = plant_find_tag(plant, options->sensor);
     if (asset < 0)
-        diag_error(diag, plant->files.path, 0, 0, "there is no asset %s", options->asset);
+        diag_error(diag, plant->files.path, 0, 0, "--asset: this plant file has no asset %s", options->asset);
     if (tag < 0)
-        diag_error(diag, plant->files.tags_path, 0, 0, "there is no tag %s", options->sensor);
+        diag_error(diag, plant->files.tags_path, 0, 0, "--sensor: this tag list has no tag %s", options->sensor);
     if (asset < 0 || tag < 0)
         return false;
     struct prepare_params params = { .folder = folder, .only = options->asset };
@@ -219,7 +219,7 @@ static bool run_all(const struct prep_options *options, struct log *log, struct 
         .folder = folder, .only = options->asset, .progress = stderr, .patience = patience, .stop = &interrupted
     };
     if (options->asset && plant_find_asset(plant, options->asset) < 0) {
-        diag_error(diag, plant->files.path, 0, 0, "there is no asset %s", options->asset);
+        diag_error(diag, plant->files.path, 0, 0, "--asset: this plant file has no asset %s", options->asset);
         return false;
     }
     if (!say_early(plant, options->memory_bytes))

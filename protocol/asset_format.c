@@ -49,21 +49,24 @@ static bool header_good(struct format_check *c, bool fresh)
 {
     const struct asset_header *h = (const struct asset_header *)c->bytes;
     if ((uintptr_t)c->bytes % ASSET_ALIGN != 0)
-        return wrong(c, "the bytes of the file are not aligned to %u bytes", ASSET_ALIGN);
+        return wrong(c, "cannot read an asset file from plantcast-prep: its bytes in memory are not aligned to %u bytes", ASSET_ALIGN);
     if (c->size < sizeof(h->magic) || memcmp(h->magic, ASSET_MAGIC, sizeof(h->magic)) != 0)
-        return wrong(c, "not an asset file (magic is not %s)", ASSET_MAGIC);
+        return wrong(c, "not an asset file from plantcast-prep: the file does not begin with %s", ASSET_MAGIC);
     if (c->size < sizeof(*h))
-        return wrong(c, "the file is truncated: %zu bytes, but the header alone has %zu", c->size, sizeof(*h));
+        return wrong(c, "damaged asset file from plantcast-prep: truncated to %zu bytes, but the header alone has %zu", c->size,
+                     sizeof(*h));
     if (h->version != ASSET_VERSION)
-        return wrong(c, "the file has version %u, but this program reads version %u", h->version, ASSET_VERSION);
+        return wrong(c, "the asset file from plantcast-prep has format version %u, but this program reads version %u", h->version,
+                     ASSET_VERSION);
     if (h->header_bytes != sizeof(*h))
-        return wrong(c, "header of %u bytes, expected %zu", h->header_bytes, sizeof(*h));
+        return wrong(c, "damaged asset file from plantcast-prep: the header has %u bytes, expected %zu", h->header_bytes, sizeof(*h));
     if (h->file_bytes != c->size)
-        return wrong(c, "%s: %zu bytes, the header says %llu", h->file_bytes > c->size ? "truncated" : "too long", c->size,
-                     (unsigned long long)h->file_bytes);
+        return wrong(c, "damaged asset file from plantcast-prep: %s: the file has %zu bytes, but its header says %llu",
+                     h->file_bytes > c->size ? "truncated" : "too long", c->size, (unsigned long long)h->file_bytes);
     uint64_t sum = fresh ? h->checksum : asset_checksum(c->bytes, c->size);
     if (sum != h->checksum)
-        return wrong(c, "checksum %016llx, the header says %016llx", (unsigned long long)sum, (unsigned long long)h->checksum);
+        return wrong(c, "damaged asset file from plantcast-prep: its checksum is %016llx, but its header says %016llx",
+                     (unsigned long long)sum, (unsigned long long)h->checksum);
     c->view.header = h;
     return true;
 }
@@ -72,13 +75,15 @@ static bool counts_good(struct format_check *c)
 {
     const struct asset_header *h = c->view.header;
     if (h->vertex_count < 3 || h->index_count < 3 || h->primitive_count < 1 || h->level_count < 1 || h->material_count < 1)
-        return wrong(c, "nothing to draw: %u vertices, %u indices, %u primitives, %u levels, %u materials", h->vertex_count, h->index_count,
-                     h->primitive_count, h->level_count, h->material_count);
+        return wrong(c,
+                     "damaged asset file from plantcast-prep: it has nothing to draw: %u vertices, %u indices, %u primitives, %u levels, "
+                     "%u materials",
+                     h->vertex_count, h->index_count, h->primitive_count, h->level_count, h->material_count);
     if (h->index_count % 3 != 0)
-        return wrong(c, "the number of indices, %u, is not a multiple of 3", h->index_count);
+        return wrong(c, "damaged asset file from plantcast-prep: the number of indices, %u, is not a multiple of 3", h->index_count);
     for (int axis = 0; axis < 3; axis++)
         if (!isfinite(h->origin_m[axis]))
-            return wrong(c, "the origin is infinite or not a number");
+            return wrong(c, "damaged asset file from plantcast-prep: a coordinate of the asset's origin is infinite or not a number");
     return true;
 }
 
@@ -112,13 +117,15 @@ static bool sections_good(struct format_check *c)
         bool optional;
         uint64_t need = asset_section_bytes(h, i, &optional);
         if (s->offset % ASSET_ALIGN != 0 || s->offset < end || s->offset > c->size || s->bytes > c->size - s->offset)
-            return wrong(c, "section %s: bytes %llu..%llu+%llu lie outside the file or overlap another section", section_names[i],
-                         (unsigned long long)s->offset, (unsigned long long)s->offset, (unsigned long long)s->bytes);
+            return wrong(c,
+                         "damaged asset file from plantcast-prep: section `%s`: bytes %llu..%llu+%llu lie outside the file or overlap "
+                         "another section",
+                         section_names[i], (unsigned long long)s->offset, (unsigned long long)s->offset, (unsigned long long)s->bytes);
         if (i == ASSET_GEODESIC && s->bytes != need && packed_good(c, s))
             need = s->bytes;
         if (need != UINT64_MAX && s->bytes != need && !(optional && s->bytes == 0))
-            return wrong(c, "section %s: %llu bytes, expected %llu", section_names[i], (unsigned long long)s->bytes,
-                         (unsigned long long)need);
+            return wrong(c, "damaged asset file from plantcast-prep: section `%s` has %llu bytes, expected %llu", section_names[i],
+                         (unsigned long long)s->bytes, (unsigned long long)need);
         end = s->offset + s->bytes;
     }
     return true;
@@ -156,7 +163,7 @@ static bool names_good(struct format_check *c)
 {
     uint64_t bytes = c->view.header->sections[ASSET_NAMES].bytes;
     if (bytes == 0 || c->view.names[bytes - 1] != 0)
-        return wrong(c, "section names: the last name is not terminated");
+        return wrong(c, "damaged asset file from plantcast-prep: section `names`: the last name does not end with a 0 byte");
     return true;
 }
 
@@ -170,22 +177,24 @@ static bool vertices_good(struct format_check *c)
     const struct asset_view *v = &c->view;
     const struct asset_header *h = v->header;
     if (!finite_all(h->bounds_min_m, 3) || !finite_all(h->bounds_max_m, 3))
-        return wrong(c, "the bounds are infinite or not numbers");
+        return wrong(c, "damaged asset file from plantcast-prep: the asset's bounding box is infinite or has invalid numbers");
     for (uint32_t i = 0; i < h->vertex_count; i++) {
         for (int axis = 0; axis < 3; axis++) {
             float x = v->positions_m[i][axis];
             if (!isfinite(x))
-                return wrong(c, "vertex %u: the position is infinite or not a number", i);
+                return wrong(c, "damaged asset file from plantcast-prep: vertex %u: the position is infinite or not a number", i);
             if (x < h->bounds_min_m[axis] || x > h->bounds_max_m[axis])
-                return wrong(c, "vertex %u: position %g m lies outside the bounds %g..%g m", i, (double)x, (double)h->bounds_min_m[axis],
-                             (double)h->bounds_max_m[axis]);
+                return wrong(
+                    c, "damaged asset file from plantcast-prep: vertex %u: coordinate %g m lies outside the asset's bounding box, %g..%g m",
+                    i, (double)x, (double)h->bounds_min_m[axis], (double)h->bounds_max_m[axis]);
         }
         const float *n = v->normals[i];
         float length2 = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
         if (!(length2 > 0.98f && length2 < 1.02f))
-            return wrong(c, "vertex %u: the normal has length %g, expected 1", i, sqrt((double)length2));
+            return wrong(c, "damaged asset file from plantcast-prep: vertex %u: the normal has length %g, expected 1", i,
+                         sqrt((double)length2));
         if ((v->texcoords && !finite_all(v->texcoords[i], 2)) || (v->second_texcoords && !finite_all(v->second_texcoords[i], 2)))
-            return wrong(c, "vertex %u: a texture coordinate is infinite or not a number", i);
+            return wrong(c, "damaged asset file from plantcast-prep: vertex %u: a texture coordinate is infinite or not a number", i);
     }
     return true;
 }
@@ -196,17 +205,20 @@ static bool primitive_good(struct format_check *c, uint32_t number, uint32_t ver
     const struct asset_primitive *p = &v->primitives[number];
     if (p->index_count % 3 != 0 || p->first_index > v->header->index_count || p->index_count > v->header->index_count - p->first_index)
         return wrong(c,
-                     "primitive %u: starts at index %u and has %u indices, but the file has only %u, or the number is not a multiple of 3",
+                     "damaged asset file from plantcast-prep: primitive %u: starts at index %u and has %u indices, but the file has only "
+                     "%u, or the number is not a multiple of 3",
                      number, p->first_index, p->index_count, v->header->index_count);
     if (p->material >= v->header->material_count)
-        return wrong(c, "primitive %u: refers to material %u, but there are only %u materials", number, p->material,
-                     v->header->material_count);
+        return wrong(c, "damaged asset file from plantcast-prep: primitive %u: refers to material %u, but there are only %u materials",
+                     number, p->material, v->header->material_count);
     if (!name_good(c, p->name))
-        return wrong(c, "primitive %u: name at byte %u lies outside the section of names", number, p->name);
+        return wrong(c, "damaged asset file from plantcast-prep: primitive %u: its name at byte %u lies outside the section `names`",
+                     number, p->name);
     for (uint32_t i = p->first_index; i < p->first_index + p->index_count; i++)
         if (v->indices[i] >= vertex_limit)
-            return wrong(c, "primitive %u: index %u refers to vertex %u, but there are only %u vertices", number, i, v->indices[i],
-                         vertex_limit);
+            return wrong(
+                c, "damaged asset file from plantcast-prep: primitive %u: index %u refers to vertex %u, but there are only %u vertices",
+                number, i, v->indices[i], vertex_limit);
     return true;
 }
 
@@ -219,17 +231,21 @@ static bool levels_good(struct format_check *c)
     for (uint32_t i = 0; i < h->level_count; i++) {
         const struct asset_level *l = &v->levels[i];
         if (l->first_primitive != next || l->primitive_count == 0 || l->primitive_count > h->primitive_count - next)
-            return wrong(c, "level %u: starts at primitive %u and has %u primitives, expected a start at primitive %u of %u", i,
-                         l->first_primitive, l->primitive_count, next, h->primitive_count);
+            return wrong(c,
+                         "damaged asset file from plantcast-prep: level of detail %u starts at primitive %u and has %u primitives, "
+                         "expected a start at primitive %u of %u",
+                         i, l->first_primitive, l->primitive_count, next, h->primitive_count);
         if (l->vertex_count > vertices || (i == 0 && l->vertex_count != vertices))
-            return wrong(c, "level %u uses the first %u vertices, expected %s%u", i, l->vertex_count, i ? "at most " : "", vertices);
+            return wrong(c, "damaged asset file from plantcast-prep: level of detail %u uses the first %u vertices, expected %s%u", i,
+                         l->vertex_count, i ? "at most " : "", vertices);
         uint32_t coarser = i + 1 < h->level_count ? v->levels[i + 1].vertex_count : 0;
         if (coarser <= l->vertex_count && l->added_count > l->vertex_count - coarser)
-            return wrong(c, "level %u adds %u vertices, but only %u vertices belong to this level", i, l->added_count,
-                         l->vertex_count - coarser);
+            return wrong(
+                c, "damaged asset file from plantcast-prep: level of detail %u adds %u vertices, but only %u vertices belong to this level",
+                i, l->added_count, l->vertex_count - coarser);
         if (!isfinite(l->error_m) || l->error_m < error_m || (i == 0 && l->error_m != 0))
-            return wrong(c, "level of detail %u is damaged: its deviation from the model is %g m, expected %s%g m", i, (double)l->error_m,
-                         i ? "at least " : "", (double)error_m);
+            return wrong(c, "damaged asset file from plantcast-prep: level of detail %u deviates from the model by %g m, expected %s%g m",
+                         i, (double)l->error_m, i ? "at least " : "", (double)error_m);
         for (uint32_t p = 0; p < l->primitive_count; p++)
             if (!primitive_good(c, next + p, l->vertex_count))
                 return false;
@@ -238,7 +254,8 @@ static bool levels_good(struct format_check *c)
         error_m = l->error_m;
     }
     if (next != h->primitive_count)
-        return wrong(c, "the levels contain %u of %u primitives", next, h->primitive_count);
+        return wrong(c, "damaged asset file from plantcast-prep: only %u of %u primitives belong to a level of detail", next,
+                     h->primitive_count);
     return true;
 }
 
@@ -249,21 +266,30 @@ static bool cluster_good(struct format_check *c, uint32_t number)
     const struct asset_cluster *cluster = &v->clusters[number];
     const float *axis = cluster->cone_axis, cutoff = cluster->cone_cutoff;
     if (!finite_all(cluster->low_m, 6) || !finite_all(axis, 3) || !(cutoff >= 0 && cutoff <= 1))
-        return wrong(c, "cluster %u: the box or cone is infinite or not a number, or cutoff %g lies outside 0..1", number, (double)cutoff);
+        return wrong(c,
+                     "damaged asset file from plantcast-prep: cluster %u of triangles: the bounding box or normal cone has invalid "
+                     "numbers, or cutoff %g is outside 0..1",
+                     number, (double)cutoff);
     for (uint32_t i = cluster->first_index; i < cluster->first_index + cluster->index_count; i++)
         for (int a = 0; a < 3; a++) {
             float x = v->positions_m[v->indices[i]][a];
             if (x < cluster->low_m[a] || x > cluster->high_m[a])
-                return wrong(c, "cluster %u: index %u at %g m lies outside the cluster's box %g..%g m", number, i, (double)x,
-                             (double)cluster->low_m[a], (double)cluster->high_m[a]);
+                return wrong(c,
+                             "damaged asset file from plantcast-prep: cluster %u of triangles: the vertex of index %u, at %g m, lies "
+                             "outside the cluster's bounding box, %g..%g m",
+                             number, i, (double)x, (double)cluster->low_m[a], (double)cluster->high_m[a]);
         }
     if (cutoff == 1)
         return true;
     if (fabs(asset_length(axis) - 1) > 1e-3)
-        return wrong(c, "cluster %u: the cone axis has length %g, expected 1", number, asset_length(axis));
+        return wrong(
+            c, "damaged asset file from plantcast-prep: cluster %u of triangles: the axis of the normal cone has length %g, expected 1",
+            number, asset_length(axis));
     double least = asset_cluster_least_dot(cluster, v->positions_m, v->indices, axis);
     if (least < sqrt(1 - (double)cutoff * (double)cutoff) - 1e-3)
-        return wrong(c, "cluster %u: a normal lies outside the cluster's cone (%g)", number, least);
+        return wrong(
+            c, "damaged asset file from plantcast-prep: cluster %u of triangles: a triangle's normal lies outside the normal cone (%g)",
+            number, least);
     return true;
 }
 
@@ -277,15 +303,17 @@ static bool clusters_good(struct format_check *c)
             const struct asset_cluster *cluster = next < count ? &v->clusters[next] : NULL;
             if (!cluster || cluster->first_index != at || cluster->index_count == 0 || cluster->index_count % 3 != 0 ||
                 cluster->index_count > end - at)
-                return wrong(c, "cluster %u of %u: indices %u+%u lie outside the expected %u..%u (primitive %u)", next, count,
-                             cluster ? cluster->first_index : 0, cluster ? cluster->index_count : 0, at, end, p);
+                return wrong(c,
+                             "damaged asset file from plantcast-prep: cluster %u of %u has indices %u+%u, outside the expected range "
+                             "%u..%u (primitive %u)",
+                             next, count, cluster ? cluster->first_index : 0, cluster ? cluster->index_count : 0, at, end, p);
             if (!cluster_good(c, next))
                 return false;
             at += cluster->index_count;
         }
     }
     if (next != count)
-        return wrong(c, "the primitives contain %u of %u clusters", next, count);
+        return wrong(c, "damaged asset file from plantcast-prep: only %u of %u clusters belong to a primitive", next, count);
     return true;
 }
 
@@ -310,22 +338,30 @@ static bool material_good(struct format_check *c, uint32_t number)
                                   m->emissive_texture };
     for (int i = 0; i < 5; i++)
         if (!texture_good(c, textures[i], m->second >> i & 1))
-            return wrong(c,
-                         textures[i] < c->view.header->texture_count
-                             ? "material %u: the file has no coordinates for texture %u (of %u textures)"
-                             : "material %u: refers to texture %u, but there are only %u textures",
-                         number, textures[i], c->view.header->texture_count);
+            return wrong(
+                c,
+                textures[i] < c->view.header->texture_count
+                    ? "damaged asset file from plantcast-prep: material %u: the file has no coordinates for texture %u (of %u textures)"
+                    : "damaged asset file from plantcast-prep: material %u: refers to texture %u, but there are only %u textures",
+                number, textures[i], c->view.header->texture_count);
     if (m->second & ~ASSET_SECOND_MASK)
-        return wrong(c, "material %u: flags of second texture coordinates 0x%x have bits outside 0x%x", number, m->second,
-                     ASSET_SECOND_MASK);
+        return wrong(c,
+                     "damaged asset file from plantcast-prep: material %u: unknown flags 0x%x for second texture coordinates (known: 0x%x)",
+                     number, m->second, ASSET_SECOND_MASK);
     if (!unit_range(m->base_color, 4) || !unit_range(&m->metallic, 1) || !unit_range(&m->roughness, 1) ||
         !unit_range(&m->occlusion_strength, 1))
-        return wrong(c, "material %u: a factor lies outside 0..1", number);
+        return wrong(
+            c, "damaged asset file from plantcast-prep: material %u: the colour, metallic, roughness or occlusion factor is outside 0..1",
+            number);
     if (!isfinite(m->normal_scale) || !finite_all(m->emissive, 3) || !isfinite(m->alpha_cutoff))
-        return wrong(c, "material %u: a factor is infinite or not a number", number);
+        return wrong(c,
+                     "damaged asset file from plantcast-prep: material %u: the normal scale, emissive colour or alpha cutoff is infinite "
+                     "or not a number",
+                     number);
     if (m->alpha > ASSET_ALPHA_BLEND || m->double_sided > 1 || !name_good(c, m->name))
-        return wrong(c, "material %u: alpha mode %u, double_sided %u or name at byte %u is out of range", number, m->alpha, m->double_sided,
-                     m->name);
+        return wrong(
+            c, "damaged asset file from plantcast-prep: material %u: alpha mode %u, double_sided %u or name at byte %u is out of range",
+            number, m->alpha, m->double_sided, m->name);
     return true;
 }
 
@@ -336,13 +372,17 @@ static bool materials_good(struct format_check *c)
     for (uint32_t i = 0; i < h->texture_count; i++) {
         const struct asset_texture *t = &c->view.textures[i];
         if (t->width_px < 1 || t->width_px > TEXTURE_MAX_PX || t->height_px < 1 || t->height_px > TEXTURE_MAX_PX)
-            return wrong(c, "texture %u: %u x %u pixels, at most %u x %u", i, t->width_px, t->height_px, TEXTURE_MAX_PX, TEXTURE_MAX_PX);
+            return wrong(c, "damaged asset file from plantcast-prep: texture %u has %u x %u pixels; at most %u x %u are allowed", i,
+                         t->width_px, t->height_px, TEXTURE_MAX_PX, TEXTURE_MAX_PX);
         uint64_t need = 4ull * t->width_px * t->height_px;
         if (t->offset > texel_bytes || need > texel_bytes - t->offset)
-            return wrong(c, "texture %u: starts at byte %llu and has %llu bytes, but the section has only %llu", i,
-                         (unsigned long long)t->offset, (unsigned long long)need, (unsigned long long)texel_bytes);
+            return wrong(
+                c,
+                "damaged asset file from plantcast-prep: texture %u: starts at byte %llu and has %llu bytes, but the section has only %llu",
+                i, (unsigned long long)t->offset, (unsigned long long)need, (unsigned long long)texel_bytes);
         if (t->srgb > 1 || t->wrap_repeat > 1)
-            return wrong(c, "texture %u: srgb %u or wrap_repeat %u is neither 0 nor 1", i, t->srgb, t->wrap_repeat);
+            return wrong(c, "damaged asset file from plantcast-prep: texture %u: srgb %u or wrap_repeat %u is neither 0 nor 1", i, t->srgb,
+                         t->wrap_repeat);
     }
     for (uint32_t i = 0; i < h->material_count; i++)
         if (!material_good(c, i))
@@ -358,9 +398,14 @@ static bool sensors_good(struct format_check *c)
     for (uint32_t i = 0; i < h->sensor_count; i++) {
         const struct asset_sensor *s = &v->sensors[i];
         if (!finite_all(s->position_m, 3) || !finite_all(s->surface_m, 3) || !isfinite(s->surface_distance_m) || s->surface_distance_m < 0)
-            return wrong(c, "sensor %u: the position is infinite or not a number, or its distance is below 0", i);
+            return wrong(c,
+                         "damaged asset file from plantcast-prep: sensor %u: its position or distance from the surface is infinite, "
+                         "negative or not a number",
+                         i);
         if (s->nearest_vertex >= h->vertex_count)
-            return wrong(c, "sensor %u: the nearest vertex is %u, but there are only %u vertices", i, s->nearest_vertex, h->vertex_count);
+            return wrong(c,
+                         "damaged asset file from plantcast-prep: sensor %u: its nearest vertex is %u, but the file has only %u vertices",
+                         i, s->nearest_vertex, h->vertex_count);
     }
     return true;
 }

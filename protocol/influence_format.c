@@ -41,16 +41,17 @@ bool influence_view_init(struct influence_view *view, const void *bytes, size_t 
     const struct influence_header *header = bytes;
     *view = (struct influence_view){ .header = header, .entries = (const struct influence_entry *)(header + 1) };
     if (size < sizeof(*header) || header->entry_count > (size - sizeof(*header)) / sizeof(*view->entries)) {
-        snprintf(why, 200, "truncated: %zu bytes", size);
+        snprintf(why, 200, "truncated to %zu bytes", size);
         return false;
     }
     if (header->vertex_count != vertex_count) {
-        snprintf(why, 200, "the influence file was made for %u vertices, but the asset has %u", header->vertex_count, vertex_count);
+        snprintf(why, 200, "the file of sensor weights was made for %u vertices, but the asset has %u", header->vertex_count, vertex_count);
         return false;
     }
     for (uint32_t i = 0; i < header->entry_count; i++)
         if (!entry_good(view, &view->entries[i], size)) {
-            snprintf(why, 200, "entry %u of %u: the weights of %u sensors are outside the file, infinite or not numbers", i,
+            snprintf(why, 200,
+                     "the file of sensor weights is damaged: entry %u of %u: the weights of %u sensors are outside the file or invalid", i,
                      header->entry_count, view->entries[i].sensor_count);
             return false;
         }

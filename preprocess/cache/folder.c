@@ -107,7 +107,7 @@ int folder_open(struct folder_file *file, const char *folder, uint64_t key, char
     if (!asset_view_init(&file->view, file->bytes, file->size, why))
         goto done;
     if (file->view.header->key != key) {
-        snprintf(why, 200, "made from other input (key %016" PRIx64 ", expected %016" PRIx64 ")", file->view.header->key, key);
+        snprintf(why, 200, "the file was made from other input (key %016" PRIx64 ", expected %016" PRIx64 ")", file->view.header->key, key);
         goto done;
     }
     result = 1;
@@ -191,7 +191,7 @@ json_t *folder_report(struct log *log, const char *folder, uint64_t key)
 {
     size_t size;
     char *path = path_of(folder, key, REPORT), *text = text_read_file(path, REPORT_MAX_BYTES, &size);
-    json_t *report = text ? parse(log, path, text, size, "the report will not include this asset's figures") : NULL;
+    json_t *report = text ? parse(log, path, text, size, "the report of plantcast-prep will not include this asset's figures") : NULL;
     mem_free(path);
     mem_free(text);
     return report;
@@ -330,8 +330,8 @@ int folder_finish(struct log *log, const char *folder, const struct folder_entry
     size_t size = 0;
     char *old = text_read_file(path, MANIFEST_MAX_BYTES, &size);
     json_t *old_root = old ? parse(log, path, old, size,
-                                   "the file will be written again, but lacks the earlier list of textures and glTF extensions "
-                                   "that are not drawn")
+                                   "the manifest is written again, without the textures and glTF extensions not drawn of assets that were "
+                                   "not prepared again")
                            : NULL;
     char *text = manifest_text(log, folder, entries, count, old_root);
     json_decref(old_root);

@@ -89,7 +89,8 @@ static void become(const struct child_params *params, int out, int errors, const
     const struct confine_params confined = { .role = params->role, .paths = params->paths, .path_count = params->path_count };
     int status = confine(&confined);
     if (status != 0 || chdir(params->folder) != 0) {
-        dprintf(STDERR_FILENO, "this process cannot be confined to %s: %s\n", params->folder, strerror(status != 0 ? -status : errno));
+        dprintf(STDERR_FILENO, "cannot restrict the file access of this process to %s: %s\n", params->folder,
+                strerror(status != 0 ? -status : errno));
         _exit(EXIT_NOT_STARTED);
     }
     environ = environment;
@@ -224,7 +225,7 @@ static bool judge(const struct child *child, const struct child_params *params, 
         snprintf(why, CHILD_WHY_BYTES, "%s needs more than %zu MB of memory%s%s%s", name, params->memory_bytes >> 20,
                  params->memory_option ? " (" : "", params->memory_option ? params->memory_option : "", params->memory_option ? ")" : "");
     else if (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL)
-        snprintf(why, CHILD_WHY_BYTES, "%s was killed (SIGKILL): this machine or service ran out of memory", name);
+        snprintf(why, CHILD_WHY_BYTES, "%s was killed (SIGKILL), probably because this machine or service ran out of memory", name);
     else if (WIFSIGNALED(status))
         snprintf(why, CHILD_WHY_BYTES, "%s crashed (SIG%s)", name, sigabbrev_np(WTERMSIG(status)));
     else if (params->errors)

@@ -202,7 +202,9 @@ static bool open_folder(struct diff_side *side, struct diag *diag)
     for (size_t i = 0; good && i < json_array_size(entries); i++)
         good = take_entry(side, json_array_get(entries, i));
     if (side->manifest && !good)
-        diag_error(diag, path, 0, 0, "this manifest lacks the placements of assets and the names of sensors: run plantcast-prep again");
+        diag_error(
+            diag, path, 0, 0,
+            "this list of prepared files (manifest) lacks the placements of assets and the names of sensors: run plantcast-prep again");
     mem_free(path);
     return good;
 }

@@ -87,7 +87,7 @@ static void add_parts(struct node_primitives *parts, struct geometry *geometry, 
 
 static bool no_triangles(const struct geometry *geometry, const char *pattern, char *why)
 {
-    return wrong(why, "%s%.120s%s has no triangles (%u line primitives, %u point primitives)", pattern ? "'" : "the model",
+    return wrong(why, "%s%.120s%s has no triangles to show, only %u line primitives and %u point primitives", pattern ? "'" : "the model",
                  pattern ? pattern : "", pattern ? "'" : "", geometry->skipped_lines, geometry->skipped_points);
 }
 
@@ -122,10 +122,11 @@ bool node_primitives_find(struct node_primitives *parts, struct geometry *geomet
     }
     mem_free(taken);
     if (triangles > MAX_TRIANGLES)
-        return wrong(why, "the asset has %llu triangles, more than the limit of %llu", (unsigned long long)triangles, MAX_TRIANGLES);
+        return wrong(why, "the asset has %llu triangles; at most %llu are possible: split the asset, or export the model coarser",
+                     (unsigned long long)triangles, MAX_TRIANGLES);
     if (geometry->node_count == 0)
         return wrong(why, model->node_count ? "the asset's patterns (`nodes`) exclude every node of the model"
-                                            : "the model's scene has no nodes");
+                                            : "the glTF model's scene has no nodes, so there is nothing to show");
     if (triangles == 0)
         return no_triangles(geometry, params->nodes, why);
     qsort(parts->at, parts->count, sizeof(*parts->at), by_material);
@@ -414,7 +415,7 @@ static bool join_parts(struct geometry *geometry, const struct node_primitives *
     if (!good)
         wrong(why, "out of memory");
     else if (geometry->index_count == 0)
-        good = wrong(why, "none of the asset's %u triangles has an area", geometry->degenerate_triangles);
+        good = wrong(why, "none of the asset's %u triangles has an area, so there is nothing to show", geometry->degenerate_triangles);
     geometry->texcoords = kept_if(room.any_texcoords, room.all_texcoords);
     geometry->second_texcoords = kept_if(room.any_second_texcoords, room.all_second_texcoords);
     geometry->colors = kept_if(room.any_colors, room.all_colors);

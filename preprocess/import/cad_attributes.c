@@ -120,7 +120,7 @@ static bool read_lines(struct cad_model *model, char *text, size_t length, struc
         if (++number == 1)
             take_separator(word, separator, sizeof(separator));
         if (!strncmp(word, "NEW ", 4) && depth == MAX_DEPTH) {
-            snprintf(why, why_bytes, "line %zu: elements are nested more than %d deep", number, MAX_DEPTH);
+            snprintf(why, why_bytes, "line %zu of the attribute file: elements are nested more than %d deep", number, MAX_DEPTH);
             good = false;
         } else if (!strncmp(word, "NEW ", 4)) {
             int node = find(&index, depth > 0 ? stack[depth - 1] : -1, trim(word + 4));
@@ -128,7 +128,7 @@ static bool read_lines(struct cad_model *model, char *text, size_t length, struc
             counts->elements++;
             counts->matched += node >= 0;
         } else if (!strcmp(word, "END") && depth == 0) {
-            snprintf(why, why_bytes, "line %zu: END without an element (NEW) that it could end", number);
+            snprintf(why, why_bytes, "line %zu of the attribute file: END without an element (NEW) that it could end", number);
             good = false;
         } else if (!strcmp(word, "END")) {
             depth--;
@@ -137,7 +137,7 @@ static bool read_lines(struct cad_model *model, char *text, size_t length, struc
         }
     }
     if (good && depth > 0) {
-        snprintf(why, why_bytes, "line %zu: the file ends before the END of %d element%s", number, depth, depth > 1 ? "s" : "");
+        snprintf(why, why_bytes, "line %zu: the attribute file ends before the END of %d element%s", number, depth, depth > 1 ? "s" : "");
         good = false;
     }
     mem_free(index.below);

@@ -82,11 +82,11 @@ static void say_counts(struct text *said, const struct rvm_counts *counts)
 {
     text_add(said, "%zu primitives\n", counts->primitives);
     if (counts->covered_faces > 0)
-        text_add(said, "left out: %zu faces, %.1f m2, that are hidden behind a neighbour's face (--keep-covered keeps hidden faces)\n",
+        text_add(said, "left out: %zu faces, %.1f m2, that are hidden behind a neighbouring face (--keep-covered keeps hidden faces)\n",
                  counts->covered_faces, counts->covered_m2);
     if (counts->unknown_chunks > 0)
-        text_add(said, "error\t%zu\tRVM: unknown chunks were skipped; the first one is %s\n", counts->unknown_chunks,
-                 counts->unknown_chunk);
+        text_add(said, "error\t%zu\tRVM: parts of the file (chunks) of unknown kinds were skipped; the first one is %s\n",
+                 counts->unknown_chunks, counts->unknown_chunk);
 }
 
 static bool convert_rvm(const char *path, const char *attributes, const char *glb, const struct conversion_params *params,
@@ -208,7 +208,7 @@ static int check(void *arg)
     if (good)
         say_flat_nodes(&model);
     if (good && model.node_count == 0)
-        good = wrong(why, "the file is empty");
+        good = wrong(why, "the model file is empty");
     if (!good)
         fprintf(stderr, "%s\n", why);
     return good ? 0 : 1;
@@ -417,9 +417,9 @@ static bool take_output(const struct model_reading *reading, const char *glb, st
 {
     struct stat st;
     if (lstat(reading->output, &st) != 0)
-        return fail(why, "the %s reader wrote no output file", reading->format->name);
+        return fail(why, "the model could not be read: the %s reader wrote no output file, and gave no reason", reading->format->name);
     if (!S_ISREG(st.st_mode) || st.st_nlink != 1)
-        return fail(why, "the output of the %s reader is not a regular file", reading->format->name);
+        return fail(why, "the model could not be read: the output of the %s reader is not a regular file", reading->format->name);
     struct child_paths paths = { 0 };
     child_paths_add(&paths, reading->output, CONFINE_READ);
     bool good = run_reading(reading, &(struct child_params){ .call = check, .arg = (void *)(uintptr_t)reading }, &paths, said, why);

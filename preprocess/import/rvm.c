@@ -65,7 +65,8 @@ static bool fail(struct rvm_reader *r, const char *fmt, ...)
 
 static bool need(struct rvm_reader *r, size_t bytes)
 {
-    return bytes <= r->chunk_end - r->at ? true : fail(r, "the RVM chunk is shorter than its content: the file is damaged");
+    return bytes <= r->chunk_end - r->at ? true
+                                         : fail(r, "the RVM file is damaged: a chunk is shorter than its content: export the model again");
 }
 
 static uint32_t peek_word(const uint8_t *at)
@@ -101,7 +102,7 @@ static char *read_text(struct rvm_reader *r)
     if (!read_word(r, &words))
         return NULL;
     if (words > (r->chunk_end - r->at) / 4) {
-        fail(r, "a text of %u bytes is longer than its RVM chunk: the file is damaged", words * 4U);
+        fail(r, "the RVM file is damaged: a text of %u bytes is longer than its chunk: export the model again", words * 4U);
         return NULL;
     }
     const char *from = (const char *)r->bytes + r->at;
@@ -154,7 +155,7 @@ static bool begin_group(struct rvm_reader *r)
         good = read_float(r, &reference_mm);
     good = good && read_word(r, &material);
     if (good && r->depth == MAX_DEPTH)
-        good = fail(r, "RVM groups are nested more than %d deep", MAX_DEPTH);
+        good = fail(r, "the groups of the RVM file are nested more than %d deep, more than Plantcast supports", MAX_DEPTH);
     if (good) {
         int node = cad_model_add_node(r->model, r->depth > 0 ? r->stack[r->depth - 1] : -1, name);
         r->model->nodes[node].material = material;
@@ -178,7 +179,7 @@ static bool read_facets(struct rvm_reader *r, struct primitive *primitive)
             if (!read_word(r, &points))
                 return false;
             if (points > (r->chunk_end - r->at) / HEADER)
-                return fail(r, "a contour of %u points is longer than its RVM chunk: the file is damaged", points);
+                return fail(r, "the RVM file is damaged: a contour of %u points is longer than its chunk: export the model again", points);
             mem_grow(&r->contours, &r->contour_room, r->contour_count + 1, sizeof(*r->contours));
             mem_grow(&r->points, &r->point_room, r->point_count + points, sizeof(*r->points));
             r->contours[r->contour_count++] = (struct rvm_contour){ r->point_count - primitive->first_point, points, c == 0 };
@@ -200,7 +201,7 @@ static bool read_primitive(struct rvm_reader *r)
     double box;
     struct primitive primitive = { .byte = r->at - HEADER };
     if (r->depth == 0)
-        return fail(r, "an RVM primitive (PRIM) is outside every group (CNTB): the file is damaged or incomplete");
+        return fail(r, "the RVM file is damaged: a primitive (PRIM) is outside every group (CNTB): export the model again");
     if (!read_word(r, &version) || !read_word(r, &kind))
         return false;
     for (int i = 0; i < 12; i++)
@@ -212,7 +213,7 @@ static bool read_primitive(struct rvm_reader *r)
     primitive.node = r->stack[r->depth - 1];
     if (kind < RVM_PYRAMID || kind > RVM_FACETS) {
         r->counts->unknown_kinds++;
-        rvm_losses_add(&r->losses, primitive.node, RVM_UNKNOWN_KIND, primitive.byte, "unknown kind of primitive");
+        rvm_losses_add(&r->losses, primitive.node, RVM_UNKNOWN_KIND, primitive.byte, "Plantcast does not know this kind of RVM primitive");
         return true;
     }
     primitive.shape.kind = (enum rvm_kind)kind;
@@ -276,17 +277,19 @@ static bool read_chunks(struct rvm_reader *r)
         char id[5];
         size_t from = r->at;
         if (r->count - from < 16 || !chunk_id(r->bytes + from, id))
-            return fail(r, "expected the header of an RVM chunk: the file is damaged");
+            return fail(r, "the RVM file is damaged: expected the header of a chunk: export the model again");
         /* stops at the chunk END: without reading the rest of the chunk's header, because some files omit header fields there */
         if (!strcmp(id, "END:"))
             return true;
         if (r->count - from < HEADER)
-            return fail(r, "the file ends within RVM chunk %s", id);
+            return fail(r, "the RVM file is truncated: it ends within chunk %s: export the model again", id);
         uint32_t next = peek_word(r->bytes + from + 16);
         if (next > r->count)
-            return fail(r, "the file ends within RVM chunk %s, which should extend to byte %u of %zu", id, next, r->count);
+            return fail(
+                r, "the RVM file is truncated: chunk %s should extend to byte %u, but the file has only %zu bytes: export the model again",
+                id, next, r->count);
         if (next < from + HEADER)
-            return fail(r, "RVM chunk %s ends before its start, at byte %u: the file is damaged", id, next);
+            return fail(r, "the RVM file is damaged: chunk %s ends before its start, at byte %u: export the model again", id, next);
         r->at = from + HEADER;
         r->chunk_end = next;
         if (!read_chunk(r, id, &ended))

@@ -475,7 +475,7 @@ static const char *add_facets(struct cad_node *node, const struct primitive_fram
     size_t before = node->triangle_count;
     GLUtesselator *tess = gluNewTess();
     if (!tess)
-        return "out of memory for its polygons";
+        return "out of memory for the primitive's polygons";
     struct tessellated_polygon polygon = { .node = node, .frame = frame, .made = mem_array(MAX_CROSSINGS, sizeof(*polygon.made)) };
     gluTessCallback(tess, GLU_TESS_VERTEX_DATA, (_GLUfuncptr)on_vertex);
     gluTessCallback(tess, GLU_TESS_EDGE_FLAG, (_GLUfuncptr)on_edge_flag);
@@ -501,7 +501,7 @@ static const char *add_facets(struct cad_node *node, const struct primitive_fram
     }
     gluDeleteTess(tess);
     mem_free(polygon.made);
-    return node->triangle_count > before ? NULL : "none of its polygons has an area";
+    return node->triangle_count > before ? NULL : "none of the primitive's polygons has an area";
 }
 
 /* --- public functions ------------------------------------------------------------------------------------------------------------- */
@@ -550,11 +550,11 @@ const char *rvm_shape_tessellate(const struct rvm_shape *shape, double chord_m, 
     struct primitive_frame frame;
     const double *n = shape->numbers;
     if (!is_finite(shape))
-        return "its numbers in the RVM file are infinite, or not numbers";
+        return "the primitive's numbers in the RVM file are infinite, or not numbers";
     if (!frame_of(shape->to_plant, &frame))
-        return "its matrix in the RVM file flattens the shape, or has invalid numbers";
+        return "the primitive's matrix in the RVM file flattens the shape, or has invalid numbers";
     if (!has_extent(shape))
-        return "its dimensions in the RVM file are zero, negative or contradictory";
+        return "the primitive's dimensions in the RVM file are zero, negative or contradictory";
     switch (shape->kind) {
     case RVM_PYRAMID: add_pyramid(node, &frame, n, shape->open_faces); break;
     case RVM_BOX: add_box(node, &frame, n, shape->open_faces); break;

@@ -73,7 +73,7 @@ static const char *copy(const struct archive_reading *from, FILE *to, size_t mos
     size_t total = 0;
     for (int count; (count = read_block(from, block)) != 0; total += (size_t)count) {
         if (count < 0)
-            return "the archive is damaged";
+            return "the archive is damaged: create the archive again";
         if (total + (size_t)count > most)
             return "the archive unpacks to more than 200 times its size";
         if (fwrite(block, 1, (size_t)count, to) != (size_t)count)
@@ -149,7 +149,8 @@ static const char *open_file(unzFile zip, const char *ending, struct text *said)
         return "the archive is encrypted: create the archive again without a password";
     if (count > 1)
         text_add(said, "left out: %zu other model%s in the archive; only %s was imported\n", count - 1, count == 2 ? "" : "s", taken);
-    return unzLocateFile(zip, taken, 1) == UNZ_OK && unzOpenCurrentFile(zip) == UNZ_OK ? NULL : "the archive is damaged";
+    return unzLocateFile(zip, taken, 1) == UNZ_OK && unzOpenCurrentFile(zip) == UNZ_OK ? NULL
+                                                                                       : "the archive is damaged: create the archive again";
 }
 
 bool unpack(const char *path, const char *output, struct text *said, char *why, size_t why_bytes)

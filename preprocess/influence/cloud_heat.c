@@ -314,8 +314,8 @@ struct cloud_heat *cloud_heat_create(struct log *log, const struct surface *surf
         return cloud;
 error:
     log_err(log, "cannot compute distances by the heat method on %zu points: %s", cloud->count,
-            cloud->common.status == CHOLMOD_NOT_POSDEF ? "the equations cannot be solved (matrix not positive definite): "
-                                                         "check the asset's model for extremely thin triangles"
+            cloud->common.status == CHOLMOD_NOT_POSDEF ? "the equations for the asset's surface cannot be solved: check its model for "
+                                                         "extremely thin triangles (matrix not positive definite)"
                                                        : "out of memory");
     cloud_heat_destroy(&cloud);
     return NULL;

@@ -477,8 +477,8 @@ bool gaussian_solve(struct influence *influence, const struct influence_task *ta
     else
         log_err(task->log, "cannot compute the Gaussian process of %zu sensors on %zu surface points with range %g m: %s", influence->count,
                 mesh->mesh.point_count, params->range_m,
-                common.status == CHOLMOD_NOT_POSDEF ? "the equations cannot be solved (matrix not positive definite): "
-                                                      "check the asset's model for extremely thin triangles, and range_m"
+                common.status == CHOLMOD_NOT_POSDEF ? "the equations for the asset's surface cannot be solved: check its model for "
+                                                      "extremely thin triangles, and `range_m` (matrix not positive definite)"
                                                     : "out of memory");
     finish(&solving, &common);
     cholmod_finish(&common);

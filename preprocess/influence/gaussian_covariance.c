@@ -263,11 +263,10 @@ bool gaussian_covariance_find(struct gaussian_covariance *covariance, struct log
         mem_free(slope.between[side]);
     gaussian_bodies_scale(&covariance->bodies, count, covariance->values, covariance->scale);
     if (slope.status != CHOLMOD_OK)
-        log_err(log,
-                "cannot compute the covariance of %zu sensors on %zu surface points with range %g m: %s",
-                count, covariance->row_count, range_m,
-                slope.status == CHOLMOD_NOT_POSDEF ? "the equations cannot be solved (matrix not positive definite): "
-                                                     "check the asset's model for extremely thin triangles, and range_m"
+        log_err(log, "cannot compute the covariance of %zu sensors on %zu surface points with range %g m: %s", count, covariance->row_count,
+                range_m,
+                slope.status == CHOLMOD_NOT_POSDEF ? "the equations for the asset's surface cannot be solved: check its model for "
+                                                     "extremely thin triangles, and `range_m` (matrix not positive definite)"
                                                    : "out of memory");
     return slope.status == CHOLMOD_OK;
 }

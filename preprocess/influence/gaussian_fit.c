@@ -61,7 +61,8 @@ static void read_rows(struct readings_table *table, struct csv *csv, const char 
         }
         if (csv->diag->errors == 0 && table->instants < MIN_INSTANTS)
             diag_error(csv->diag, csv->path, 0, 0,
-                       "%zu lines have a value for each of the %zu sensors, %zu lines do not; the fit needs at least %d complete lines",
+                       "only %zu lines of this `fit` file have a value for each of the %zu sensors, %zu lines do not; the fit of `gp` "
+                       "needs at least %d such lines",
                        table->instants, table->count, table->left_out, MIN_INSTANTS);
     }
     mem_free(columns);
@@ -322,7 +323,8 @@ bool gaussian_fit(struct gaussian_params *params, const struct gaussian_data *da
     const size_t n = data->table->count;
     struct gaussian_fit fit;
     if (n < PLANT_GP_FITTED) {
-        snprintf(why, 300, "the asset has %zu sensors, but a fit needs at least %d: set `range_m`, `noise` and `deviation` instead", n,
+        snprintf(why, 300,
+                 "the asset has %zu sensors, but the fit of `gp` needs at least %d: set `range_m`, `noise` and `deviation` instead", n,
                  PLANT_GP_FITTED);
         return false;
     }

@@ -176,11 +176,10 @@ bool influence_conduct(struct influence *influence, const struct influence_task 
     if (good)
         make_symmetric(influence);
     else
-        log_err(task->log,
-                "cannot compute heat conduction between %zu sensors (%zu surface points): %s",
-                influence->count, mesh->mesh.point_count,
-                common.status == CHOLMOD_NOT_POSDEF ? "the equations cannot be solved (matrix not positive definite): "
-                                                      "check the asset's model for extremely thin triangles"
+        log_err(task->log, "cannot compute heat conduction between %zu sensors (%zu surface points): %s", influence->count,
+                mesh->mesh.point_count,
+                common.status == CHOLMOD_NOT_POSDEF ? "the equations for the asset's surface cannot be solved: check its model for "
+                                                      "extremely thin triangles (matrix not positive definite)"
                                                     : "out of memory");
     cholmod_free_factor(&conduct.factor, &common);
     cholmod_finish(&common);

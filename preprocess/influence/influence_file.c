@@ -397,10 +397,11 @@ bool influence_file_make(struct log *log, struct workers *workers, const struct 
         good = add_group(&making, (int)g);
     int status = good ? write_file(&making) : 0;
     if (!good)
-        snprintf(why, 200, "cannot compute how %zu sensors influence %zu vertices, so the asset cannot be prepared: see the messages above",
+        snprintf(why, 200,
+                 "cannot compute the weights of %zu sensors at %zu vertices, so the asset cannot be prepared: see the messages above",
                  input->sensor_count, input->vertex_count);
     else if (status != 0)
-        snprintf(why, 200, "cannot write the influence of the asset's sensors to %.80s: %s", input->folder, strerror(-status));
+        snprintf(why, 200, "cannot write the weights of the asset's sensors to the folder %.80s: %s", input->folder, strerror(-status));
     for (uint32_t i = 0; i < making.header.entry_count; i++)
         influence_finish(&making.found[i]);
     vertex_embedding_destroy(&making.embedding);

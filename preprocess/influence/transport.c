@@ -320,9 +320,10 @@ bool transport_angles(struct influence *influence, struct log *log, struct worke
         workers_for(workers, influence->count, 1, solve_some, &transport);
     good = good && !transport.failed;
     if (!good)
-        log_err(log, "cannot compute the directions of %zu sensors on %zu surface points: %s", influence->count, mesh->mesh.point_count,
-                common.status == CHOLMOD_NOT_POSDEF ? "the equations cannot be solved (matrix not positive definite): "
-                                                      "check the asset's model for extremely thin triangles"
+        log_err(log, "cannot compute how the directions measured by %zu sensors continue over %zu surface points: %s", influence->count,
+                mesh->mesh.point_count,
+                common.status == CHOLMOD_NOT_POSDEF ? "the equations for the asset's surface cannot be solved: check its model for "
+                                                      "extremely thin triangles (matrix not positive definite)"
                                                     : "out of memory");
     cholmod_free_factor(&transport.factor, &common);
     cholmod_finish(&common);

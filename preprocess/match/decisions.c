@@ -88,7 +88,7 @@ static bool find_columns(const struct table_row *header, int columns[COLUMNS], c
     }
     for (int i = TAG; i <= ASSET; i++)
         if (columns[i] < 0) {
-            snprintf(why, MATCH_WHY_BYTES, "line %d: the header has no column '%s'", header->line, names[i]);
+            snprintf(why, MATCH_WHY_BYTES, "line %d: the header of this file of decisions has no column '%s'", header->line, names[i]);
             return false;
         }
     return true;
@@ -106,7 +106,7 @@ static bool read_row(struct decision *out, const struct table_row *row, const in
         if (!strcasecmp(status, match_status_names[i]))
             found = i;
     if (found < 0 && *status) {
-        snprintf(why, MATCH_WHY_BYTES, "line %d: Status: expected sure, likely or none, found '%.40s'", row->line, status);
+        snprintf(why, MATCH_WHY_BYTES, "line %d: column Status: expected sure, likely or none, found '%.40s'", row->line, status);
         return false;
     }
     *out = (struct decision){ .tag = mem_strdup(table_cell(row, columns[TAG])), .asset = mem_strdup(asset), .row = row_text(row, columns) };

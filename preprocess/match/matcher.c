@@ -84,7 +84,7 @@ static void decide(const struct matcher *matcher, const struct proposal proposal
             candidates_name(&proposals[open].candidates, matcher->site, names, sizeof(names));
             text_add(&reason, "%s: %s", proposals[open].reason, names);
         } else {
-            text_add(&reason, "nothing in the model has the name, number or words of the tag");
+            text_add(&reason, "no match: no node of the model has the name, number or words of the tag");
         }
     } else {
         const struct proposal *of = &proposals[chosen];
@@ -201,7 +201,7 @@ static bool read_table(struct cell_table *table, const char *path, const char *f
     mem_free(bytes);
     if (good && (table->count == 0 || strcasecmp(table_cell(&table->rows[0], 0), first) != 0 ||
                  strcasecmp(table_cell(&table->rows[0], 1), second) != 0)) {
-        snprintf(why, MATCH_WHY_BYTES, "line 1: expected the header %s,%s", first, second);
+        snprintf(why, MATCH_WHY_BYTES, "line 1: expected the columns %s,%s", first, second);
         good = false;
     }
     return good;
@@ -218,7 +218,7 @@ bool matcher_read_rules(struct matcher *matcher, const char *path, char why[MATC
         int error = regcomp(&rule->pattern, table_cell(&table.rows[i], 0), REG_EXTENDED | REG_ICASE);
         if (error) {
             regerror(error, &rule->pattern, reason, sizeof(reason));
-            snprintf(why, MATCH_WHY_BYTES, "line %d: '%.80s' is not a valid regular expression: %s", table.rows[i].line,
+            snprintf(why, MATCH_WHY_BYTES, "line %d: column Tag: '%.80s' is not a valid regular expression: %s", table.rows[i].line,
                      table_cell(&table.rows[i], 0), reason);
             good = false;
         } else {
@@ -238,7 +238,8 @@ bool matcher_read_aliases(struct matcher *matcher, const char *path, char why[MA
         const char *text = table_cell(&table.rows[i], 0), *equipment = table_cell(&table.rows[i], 1);
         int asset = matcher_find_asset(matcher, equipment);
         if (asset < 0) {
-            snprintf(why, MATCH_WHY_BYTES, "line %d: no asset is called '%.80s'", table.rows[i].line, equipment);
+            snprintf(why, MATCH_WHY_BYTES, "line %d: column Equipment: no asset of the plant is called '%.80s'", table.rows[i].line,
+                     equipment);
             good = false;
             break;
         }

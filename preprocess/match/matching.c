@@ -189,7 +189,7 @@ static bool obey(struct matching_run *run)
             continue;
         int asset = *decision->asset ? matcher_find_asset(&run->matcher, decision->asset) : -1;
         if (*decision->asset && asset < 0) {
-            snprintf(why, sizeof(why), "tag %.60s: no asset is called '%.80s'", decision->tag, decision->asset);
+            snprintf(why, sizeof(why), "tag %.60s: no asset of the plant is called '%.80s'", decision->tag, decision->asset);
             good = fail_at(path, why);
         }
         mem_free(match->reason);
@@ -453,9 +453,11 @@ static void print_result(const struct matching_run *run, FILE *out)
     size_t counts[3] = { 0 };
     for (size_t i = 0; i < run->list.count; i++)
         counts[run->matches[i].status]++;
-    fprintf(out, "%zu tags: %zu sure, %zu likely, %zu none", run->list.count, counts[MATCH_SURE], counts[MATCH_LIKELY], counts[MATCH_NONE]);
+    fprintf(out, "%zu tags; matches to equipment: %zu sure, %zu likely, %zu none", run->list.count, counts[MATCH_SURE],
+            counts[MATCH_LIKELY], counts[MATCH_NONE]);
     fprintf(out, run->by_hand > 0 ? "; %zu of them by hand\n" : "\n", run->by_hand);
-    fprintf(out, "positions: %zu tags at a node of their own, %zu tags at an assumed position\n", run->own_nodes, run->assumed);
+    fprintf(out, "positions: %zu tags are at a node of their own, %zu tags at an assumed position of their equipment\n", run->own_nodes,
+            run->assumed);
     if (run->left_out > 0)
         fprintf(out,
                 run->left_out == 1 ? "%zu tag is not in the tag list, because the tag is text or has no address for %s\n"
@@ -605,7 +607,8 @@ static bool take_answer(struct matching_run *run, int file)
     }
     for (int i = good ? 1 : 0; i < (good ? 3 : 4); i++)
         mem_free(texts[i]);
-    return good || fail_at(run->params->tags, "the tag list reader ended without a result");
+    return good ||
+           fail_at(run->params->tags, "the tag list could not be matched: the process that read it ended without a result or reason");
 }
 
 static void add_paths(const struct matching_run *run, struct child_paths *paths)

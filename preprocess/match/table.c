@@ -152,10 +152,10 @@ bool table_read_csv(struct cell_table *table, const char *text, char separator, 
             at = read_cell(table, &row, at, separator, &line);
             if (!at || row.count > TABLE_MAX_CELLS || table->count >= TABLE_MAX_ROWS) {
                 if (!at)
-                    snprintf(why, why_bytes, "line %d: a quote is never closed", begin);
+                    snprintf(why, why_bytes, "line %d of the table: a quote is never closed", begin);
                 else
-                    snprintf(why, why_bytes, "line %d: more than %d cells in a row, or more than %d rows", begin, TABLE_MAX_CELLS,
-                             TABLE_MAX_ROWS);
+                    snprintf(why, why_bytes, "line %d of the table: more than %d cells in a row, or more than %d rows", begin,
+                             TABLE_MAX_CELLS, TABLE_MAX_ROWS);
                 table_row_finish(&row);
                 return false;
             }

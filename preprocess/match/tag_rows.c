@@ -121,7 +121,7 @@ bool tag_rows_read(struct tag_rows *rows, const char *path, char why[MATCH_WHY_B
     }
     rows->known = rows->count;
     if (find_column(rows, NAME) < 0) {
-        snprintf(why, MATCH_WHY_BYTES, "the header has no column 'Tag Name'");
+        snprintf(why, MATCH_WHY_BYTES, "the header of the tag list has no column 'Tag Name'");
         return false;
     }
     rows->by_name = mem_array(rows->known, sizeof(*rows->by_name));

@@ -48,19 +48,19 @@ bool claims_good(const char *bytes, size_t size, char *why)
     static_assert(sizeof(header) == 11, "the header must have no padding, as in Draco data");
     buffer.Init(bytes, size);
     if (!buffer.Decode(&header, sizeof(header)) || memcmp(header.magic, "DRACO", 5) != 0)
-        return wrong(why, "%zu bytes without Draco's signature", size);
+        return wrong(why, "the %zu bytes of compressed data do not begin with DRACO, so they are damaged", size);
     if (header.major != 2 || header.minor != 2 || header.type != draco::TRIANGULAR_MESH || header.method > draco::MESH_EDGEBREAKER_ENCODING)
-        return wrong(why, "Draco version %u.%u, type %u, method %u: only meshes of version 2.2 are supported", header.major, header.minor,
-                     header.type, header.method);
+        return wrong(why, "Plantcast supports only Draco meshes of version 2.2; this one has version %u.%u, type %u, method %u",
+                     header.major, header.minor, header.type, header.method);
     draco::GeometryMetadata metadata;
     if ((header.flags[1] & 128) && !draco::MetadataDecoder().DecodeGeometryMetadata(&buffer, &metadata))
-        return wrong(why, "the metadata is truncated");
+        return wrong(why, "the metadata of the Draco-compressed mesh is truncated");
     uint64_t first = 0, second = 0;
     bool edgebreaker = header.method == draco::MESH_EDGEBREAKER_ENCODING;
     if (edgebreaker)
         buffer.Advance(1); /* skip the traversal type */
     if (!read_varint(&buffer, &first) || !read_varint(&buffer, &second))
-        return wrong(why, "truncated at %zu bytes", size);
+        return wrong(why, "the Draco-compressed mesh is truncated at %zu bytes", size);
     uint64_t triangles = edgebreaker ? second : first, vertices = edgebreaker ? first : second,
              most = FREE_TRIANGLES + TRIANGLES_PER_BYTE * size;
     if (triangles > most || vertices > 3 * most)
@@ -83,7 +83,8 @@ bool decode(draco_mesh *out, const char *bytes, size_t size, char *why)
     for (uint32_t f = 0; f < out->mesh->num_faces(); f++)
         for (draco::PointIndex v : out->mesh->face(draco::FaceIndex(f)))
             if (v.value() >= out->mesh->num_points())
-                return wrong(why, "triangle %u refers to vertex %u, but there are only %u vertices", f, v.value(), out->mesh->num_points());
+                return wrong(why, "triangle %u of the Draco-compressed mesh refers to vertex %u, but there are only %u vertices", f,
+                             v.value(), out->mesh->num_points());
     return true;
 }
 
@@ -145,7 +146,7 @@ extern "C" struct draco_mesh *draco_mesh_decode(const void *bytes, size_t size, 
     } catch (const std::exception &e) {
         wrong(why, "%s", e.what());
     } catch (...) {
-        wrong(why, "the Draco library failed without a reason");
+        wrong(why, "the Draco library could not decompress the mesh, and gave no reason: export the model again");
     }
     return nullptr;
 }

@@ -55,19 +55,19 @@ byte_span view_span(const gltf_work &w, int number, uint64_t offset, uint64_t el
                     const std::string &what)
 {
     if (number < 0 || static_cast<size_t>(number) >= w.parsed.bufferViews.size())
-        refuse("%s: there is no bufferView %d", what.c_str(), number);
+        refuse("invalid glTF file: %s refers to bufferView %d, which does not exist", what.c_str(), number);
     const tinygltf::BufferView &view = w.parsed.bufferViews[static_cast<size_t>(number)];
     const document_bytes &buffer = w.document->buffers[view.buffer];
     uint64_t stride = strided && view.byteStride ? view.byteStride : element;
     if (stride < element)
-        refuse("%s: byteStride %llu of bufferView %d is less than an element's %llu bytes", what.c_str(),
+        refuse("invalid glTF file: %s: byteStride %llu of bufferView %d is less than an element's %llu bytes", what.c_str(),
                static_cast<unsigned long long>(stride), number, static_cast<unsigned long long>(element));
     if (count > view.byteLength)
-        refuse("%s: %llu elements do not fit into the %zu bytes of bufferView %d", what.c_str(), static_cast<unsigned long long>(count),
-               view.byteLength, number);
+        refuse("invalid glTF file: %s: %llu elements do not fit into the %zu bytes of bufferView %d", what.c_str(),
+               static_cast<unsigned long long>(count), view.byteLength, number);
     if (count > 0 && (offset > view.byteLength || (count - 1) * stride + element > view.byteLength - offset))
-        refuse("%s: %llu elements do not fit into bufferView %d of %zu bytes", what.c_str(), static_cast<unsigned long long>(count), number,
-               view.byteLength);
+        refuse("invalid glTF file: %s: %llu elements do not fit into bufferView %d of %zu bytes", what.c_str(),
+               static_cast<unsigned long long>(count), number, view.byteLength);
     return { buffer.at + view.byteOffset + offset, static_cast<size_t>(stride), static_cast<size_t>(count) };
 }
 
@@ -82,9 +82,9 @@ accessor::accessor(const gltf_work &w, int number, int width, const std::string 
     wanted = width ? width : has;
     size_t element = component_bytes(type) * static_cast<size_t>(has);
     if (component_bytes(type) == 0)
-        refuse("%s: component type %d does not exist in glTF 2.0", what.c_str(), type);
+        refuse("invalid glTF file: %s has component type %d, which does not exist in glTF 2.0", what.c_str(), type);
     if (has != wanted)
-        refuse("%s: %d components, expected %d", what.c_str(), has, wanted);
+        refuse("invalid glTF file: %s has %d components, expected %d", what.c_str(), has, wanted);
     base = view_span(w, a.bufferView, a.byteOffset, element, a.count, true, what);
     if (!a.sparse.isSparse)
         return;
@@ -92,14 +92,16 @@ accessor::accessor(const gltf_work &w, int number, int width, const std::string 
     size_t count = static_cast<size_t>(a.sparse.count), index_bytes = component_bytes(index_type);
     if (count > a.count || index_bytes == 0 || index_type == TINYGLTF_COMPONENT_TYPE_FLOAT || index_type == TINYGLTF_COMPONENT_TYPE_BYTE ||
         index_type == TINYGLTF_COMPONENT_TYPE_SHORT)
-        refuse("%s: invalid sparse accessor: %zu of %zu elements, indices of component type %d", what.c_str(), count, a.count, index_type);
+        refuse("invalid glTF file: %s: sparse accessor with %zu of %zu elements and indices of component type %d", what.c_str(), count,
+               a.count, index_type);
     byte_span places =
         view_span(w, a.sparse.indices.bufferView, static_cast<uint64_t>(a.sparse.indices.byteOffset), index_bytes, count, false, what);
     values = view_span(w, a.sparse.values.bufferView, static_cast<uint64_t>(a.sparse.values.byteOffset), element, count, false, what);
     for (size_t i = 0; i < count; i++) {
         size_t place = integer(places.bytes + i * index_bytes, index_type);
         if (place >= a.count || (i > 0 && place <= replaced.back().first))
-            refuse("%s: invalid sparse accessor: element %zu of %zu is out of range or out of order", what.c_str(), place, a.count);
+            refuse("invalid glTF file: %s: sparse accessor: the index of element %zu of %zu is out of range or out of order", what.c_str(),
+                   place, a.count);
         replaced.emplace_back(place, i);
     }
 }
@@ -113,15 +115,15 @@ void accessor::get(size_t element, double *out) const
     for (int c = 0; c < wanted; c++) {
         out[c] = component(from + static_cast<size_t>(c) * component_bytes(type), type, normalized);
         if (!std::isfinite(out[c]))
-            refuse("%s: element %zu is infinite or not a number", what.c_str(), element);
+            refuse("invalid glTF file: %s: element %zu is infinite or not a number", what.c_str(), element);
     }
 }
 
 void take_elements(gltf_work *w, uint64_t count, const std::string &what)
 {
     if (count > w->elements_left)
-        refuse("%s: %llu elements are too many for a file of %zu bytes", what.c_str(), static_cast<unsigned long long>(count),
-               w->document->total_bytes);
+        refuse("invalid glTF file: %s: %llu elements cannot be in a file of %zu bytes", what.c_str(),
+               static_cast<unsigned long long>(count), w->document->total_bytes);
     w->elements_left -= count;
 }
 

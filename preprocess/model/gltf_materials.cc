@@ -83,9 +83,9 @@ uint32_t texture_of(gltf_work *w, int texture, bool srgb, std::string *why)
     int image = image_of(t);
     const document_image *from = image < 0 ? nullptr : &w->document->images[image];
     if (from && from->missing)
-        *why = std::string("the texture's image is missing: ") + from->missing;
+        *why = std::string("the texture's image is missing, so the texture is not shown: ") + from->missing;
     else if (!from || !is_readable(from->bytes))
-        *why = "the texture's image is not PNG, JPEG or WebP";
+        *why = "the texture's image is not PNG, JPEG or WebP, so the texture is not shown";
     if (!why->empty())
         return ASSET_NO_TEXTURE;
     bool repeat = t.sampler < 0 || w->parsed.samplers.at(static_cast<size_t>(t.sampler)).wrapS != TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
@@ -133,7 +133,7 @@ void read_textures(gltf_work *w, const tinygltf::Material &from, asset_material 
             continue;
         if (lays.of[i] == 2)
             why = "(TEXCOORD_" + std::to_string(transform_of(w->parsed, uses[i]).set) +
-                  ") needs a third texture mapping, but only two are supported";
+                  ") is not shown: Plantcast supports only two texture mappings for a material";
         else
             *places[i] = texture_of(w, uses[i].texture, i == BASE_COLOR || i == EMISSIVE, &why);
         if (!why.empty())
@@ -156,7 +156,7 @@ void read_material(gltf_work *w, const tinygltf::Material &from, asset_material 
     to->occlusion_strength = unit(from.occlusionTexture.strength);
     to->alpha_cutoff = finite(from.alphaCutoff, 0.5);
     if (from.alphaMode != "OPAQUE" && from.alphaMode != "MASK" && from.alphaMode != "BLEND")
-        refuse("%s: alphaMode '%.20s' does not exist in glTF 2.0", what.c_str(), from.alphaMode.c_str());
+        refuse("invalid glTF file: %s: alphaMode '%.20s' does not exist in glTF 2.0", what.c_str(), from.alphaMode.c_str());
     to->alpha = from.alphaMode == "MASK" ? ASSET_ALPHA_MASK : from.alphaMode == "BLEND" ? ASSET_ALPHA_BLEND : ASSET_ALPHA_OPAQUE;
     to->double_sided = from.doubleSided;
     read_textures(w, from, to, number, what);
@@ -199,8 +199,9 @@ void leave_out_bounded(gltf_work *w, int material, size_t lay)
     for (size_t i = 0; i < USE_COUNT; i++)
         if (*places[i] != ASSET_NO_TEXTURE && lays.of[i] == lay && transform_of(w->parsed, uses[i]).bounded) {
             *places[i] = ASSET_NO_TEXTURE;
-            leave_out(w, material_what(*w, material) + ": the " + use_names[i] +
-                             " texture: mirroring, or different wrapping along u and v, is not supported outside 0..1");
+            leave_out(w,
+                      material_what(*w, material) + ": the " + use_names[i] +
+                          " texture is not shown: Plantcast does not support mirroring, or different wrapping along u and v, outside 0..1");
         }
 }
 

@@ -25,18 +25,20 @@ std::vector<uint32_t> read_indices(gltf_work *w, const tinygltf::Primitive &p, s
     int type = from.component_type();
     if (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE && type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
         type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT)
-        refuse("%s: indices: component type %d is not allowed for indices", what.c_str(), type);
+        refuse("invalid glTF file: %s: the accessor of `indices` has component type %d, which is not allowed for indices", what.c_str(),
+               type);
     if (from.is_normalized())
-        refuse("%s: indices: must not be normalized", what.c_str());
+        refuse("invalid glTF file: %s: the accessor of `indices` has `normalized: true`, which is not allowed for indices", what.c_str());
     if (from.width() != 1)
-        refuse("%s: indices: %d components, expected 1", what.c_str(), from.width());
+        refuse("invalid glTF file: %s: the accessor of `indices` has %d components, expected 1", what.c_str(), from.width());
     take_elements(w, from.count(), what + ": indices");
     out.resize(from.count());
     for (size_t i = 0; i < out.size(); i++) {
         double index;
         from.get(i, &index);
         if (!(index < static_cast<double>(vertex_count)))
-            refuse("%s: indices: index %zu refers to vertex %.0f, but there are only %zu vertices", what.c_str(), i, index, vertex_count);
+            refuse("invalid glTF file: %s: index number %zu refers to vertex %.0f, but there are only %zu vertices", what.c_str(), i, index,
+                   vertex_count);
         out[i] = static_cast<uint32_t>(index);
     }
     return out;
@@ -47,7 +49,7 @@ std::vector<uint32_t> triangle_list(std::vector<uint32_t> in, int mode, const st
     std::vector<uint32_t> out;
     if (mode == TINYGLTF_MODE_TRIANGLES) {
         if (in.size() % 3 != 0)
-            refuse("%s: the number of indices, %zu, is not a multiple of 3", what.c_str(), in.size());
+            refuse("invalid glTF file: %s: the number of indices, %zu, is not a multiple of 3", what.c_str(), in.size());
         return in;
     }
     for (size_t i = 2; i < in.size(); i++) {
@@ -108,7 +110,8 @@ struct attribute_reader {
     {
         accessor a(w, primitive.attributes.at(name), width, what + ": " + name);
         if (a.count() != vertex_count)
-            refuse("%s: %s: %zu elements, positions have %zu", what.c_str(), name.c_str(), a.count(), vertex_count);
+            refuse("invalid glTF file: %s: attribute %s has %zu elements, but POSITION has %zu", what.c_str(), name.c_str(), a.count(),
+                   vertex_count);
         return a;
     }
 };
@@ -117,7 +120,7 @@ float narrow(double value, const std::string &what)
 {
     float out = static_cast<float>(value);
     if (!std::isfinite(out))
-        refuse("%s: %g is too large for a 32-bit float", what.c_str(), value);
+        refuse("invalid glTF file: %s: the number %g is too large for a 32-bit float", what.c_str(), value);
     return out;
 }
 
@@ -164,7 +167,7 @@ void read_colors(const attribute_reader &reader, gltf_primitive *out)
 {
     accessor from = reader.open("COLOR_0", 0);
     if (from.width() != 3 && from.width() != 4)
-        refuse("%s: COLOR_0: %d components, expected 3 or 4", reader.what.c_str(), from.width());
+        refuse("invalid glTF file: %s: COLOR_0 has %d components, expected 3 or 4", reader.what.c_str(), from.width());
     out->colors = reinterpret_cast<uint8_t(*)[4]>(new_array<uint8_t>(4 * reader.used.size() + 1));
     for (size_t i = 0; i < reader.used.size(); i++) {
         double color[4] = { 1, 1, 1, 1 };
@@ -192,7 +195,7 @@ void check_morphing(const std::vector<double> &weights, const std::string &what)
 {
     for (double weight : weights)
         if (weight != 0)
-            refuse("%s: morph targets are not supported", what.c_str());
+            refuse("%s: Plantcast does not support morph targets: export the model without them", what.c_str());
 }
 
 /* Reads a primitive. Returns false if it has no triangles, for example because it consists of lines or points. */
@@ -204,10 +207,10 @@ bool read_primitive(gltf_work *w, const tinygltf::Primitive &p, gltf_primitive *
         return false;
     }
     if (mode < 0 || mode > TINYGLTF_MODE_TRIANGLE_FAN)
-        refuse("%s: primitive mode %d does not exist in glTF 2.0", what.c_str(), mode);
+        refuse("invalid glTF file: %s: primitive mode %d does not exist in glTF 2.0", what.c_str(), mode);
     auto position = p.attributes.find("POSITION");
     if (position == p.attributes.end())
-        refuse("%s: has no POSITION", what.c_str());
+        refuse("invalid glTF file: %s has no attribute POSITION", what.c_str());
     size_t vertices = accessor(*w, position->second, 3, what + ": POSITION").count();
     std::vector<uint32_t> indices = triangle_list(read_indices(w, p, vertices, what), mode, what), used = compact(&indices);
     if (indices.empty())

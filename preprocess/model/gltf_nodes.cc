@@ -97,10 +97,11 @@ void add_instances(node_order *tree, int number, int parent, const tinygltf::Val
         used[i] = static_cast<int>(values.size());
         values.emplace_back(*tree->w, static_cast<int>(place), widths[i], what + ": " + names[i]);
         if (values.back().count() != values.front().count())
-            refuse("%s: %zu and %zu instances", what.c_str(), values.front().count(), values.back().count());
+            refuse("invalid glTF file: %s: the attributes have different numbers of instances, %zu and %zu", what.c_str(),
+                   values.front().count(), values.back().count());
     }
     if (values.empty())
-        refuse("%s: the instances have neither TRANSLATION, ROTATION nor SCALE", what.c_str());
+        refuse("invalid glTF file: %s: the instances have neither TRANSLATION, ROTATION nor SCALE", what.c_str());
     take_elements(tree->w, values.front().count() * ELEMENTS_PER_INSTANCE, what);
     for (size_t i = 0; i < values.front().count(); i++) {
         double t[3] = { 0, 0, 0 }, q[4] = { 0, 0, 0, 1 }, s[3] = { 1, 1, 1 }, local[16], world[16];
@@ -119,9 +120,9 @@ void walk(node_order *tree, int number, int parent, const double parent_world[16
 {
     std::string what = node_what(tree->w->parsed, number);
     if (tree->seen[static_cast<size_t>(number)])
-        refuse("%s is part of a cycle or has two parents", what.c_str());
+        refuse("invalid glTF file: %s is part of a cycle or has two parents", what.c_str());
     if (depth > NODE_MAX_DEPTH)
-        refuse("%s: nodes are nested deeper than %d levels", what.c_str(), NODE_MAX_DEPTH);
+        refuse("%s of the glTF model is nested deeper than %d levels, the most that Plantcast supports", what.c_str(), NODE_MAX_DEPTH);
     tree->seen[static_cast<size_t>(number)] = 1;
     const tinygltf::Node &node = tree->w->parsed.nodes[static_cast<size_t>(number)];
     bool morphs = std::any_of(node.weights.begin(), node.weights.end(), [](double weight) { return weight != 0; });
@@ -154,7 +155,7 @@ std::vector<int> roots_of(const tinygltf::Model &m)
         if (!child[i])
             roots.push_back(static_cast<int>(i));
     if (roots.empty() && !m.nodes.empty())
-        refuse("every node is the child of another node: the nodes form a cycle");
+        refuse("invalid glTF file: every node is the child of another node: the nodes form a cycle");
     return roots;
 }
 
@@ -167,7 +168,7 @@ void note_unreached(const node_order &tree)
         if (!tree.seen[i] && tree.w->parsed.nodes[i].mesh >= 0 && count++ == 0)
             first = node_what(tree.w->parsed, static_cast<int>(i));
     if (count > 0)
-        leave_out(tree.w, "not in the file's default scene: " + std::to_string(count) +
+        leave_out(tree.w, "not shown, because not in the glTF file's default scene: " + std::to_string(count) +
                               (count > 1 ? " nodes with meshes, such as " : " node with a mesh, ") + first);
 }
 

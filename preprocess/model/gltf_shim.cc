@@ -68,7 +68,7 @@ void parse(gltf::gltf_work *w)
     std::string error, warning;
     loader.SetFsCallbacks(no_files());
     if (w->document->json_bytes > std::numeric_limits<unsigned>::max())
-        refuse("the JSON of the model has %zu bytes; at most %u are supported", w->document->json_bytes,
+        refuse("the JSON part of the glTF model has %zu bytes; Plantcast supports at most %u: split the model", w->document->json_bytes,
                std::numeric_limits<unsigned>::max());
     bool good =
         loader.LoadASCIIFromString(&w->parsed, &error, &warning, w->document->json, static_cast<unsigned>(w->document->json_bytes), "");
@@ -101,7 +101,7 @@ extern "C" bool gltf_load(struct gltf_model *model, const struct model_source *s
     } catch (const std::exception &e) {
         snprintf(why, MODEL_WHY_BYTES, "%s", e.what());
     } catch (...) {
-        snprintf(why, MODEL_WHY_BYTES, "the glTF library failed without a reason");
+        snprintf(why, MODEL_WHY_BYTES, "the glTF library could not read the model, and gave no reason: export the model again");
     }
     if (!good)
         gltf_free(model);

@@ -30,14 +30,15 @@ static bool load_buffer(struct document_work *work, size_t number, const json_t 
     } else if (number == 0 && work->binary.at && !standin) {
         bytes = (struct document_bytes){ .at = work->binary.at, .size = work->binary.size };
     } else if (!standin) {
-        return wrong(work->why, "the bytes of buffer %zu are missing: the buffer has no uri, and this file has no binary chunk", number);
+        return wrong(work->why, "incomplete glTF file: buffer %zu has no uri, and the file has no binary chunk: export the model again",
+                     number);
     }
     size_t has = bytes.size;
     if (length < has)
         bytes.size = (size_t)length;
     document_add_buffer(work, bytes);
     if (length > has && bytes.at)
-        return wrong(work->why, "buffer %zu is truncated: %zu bytes instead of %" PRIu64, number, has, length);
+        return wrong(work->why, "incomplete glTF file: buffer %zu has %zu bytes instead of %" PRIu64, number, has, length);
     return true;
 }
 
@@ -81,11 +82,11 @@ static bool fill_with_zeros(struct document_work *work, const json_t *number, ui
         return true;
     uint64_t count = document_number(accessor, "count"), element = document_element_bytes(accessor, &component_type, &width);
     if (count > MAX_ZERO_BYTES || (*zeros += count * element) > MAX_ZERO_BYTES)
-        return wrong(work->why, "accessor %lld: %" PRIu64 " elements without data in the file are too many",
+        return wrong(work->why, "invalid glTF file: accessor %lld has %" PRIu64 " elements without data, more than Plantcast supports",
                      (long long)json_integer_value(number), count);
     unsigned char *own = mem_try_array(count * element + 1, 1);
     if (!own)
-        return wrong(work->why, "cannot read accessor %lld: out of memory", (long long)json_integer_value(number));
+        return wrong(work->why, "cannot read accessor %lld of the glTF model: out of memory", (long long)json_integer_value(number));
     document_point_accessor(work, accessor, document_add_buffer(work, (struct document_bytes){ own, (size_t)(count * element), own }));
     work->document->total_bytes -= (size_t)(count * element);
     return true;
@@ -142,7 +143,7 @@ static bool load_image(struct document_work *work, size_t number, const json_t *
         if (!image->bytes.at)
             image->missing = mem_strdup(uri_why);
     } else {
-        return wrong(work->why, "image %zu has neither a uri nor a bufferView", number);
+        return wrong(work->why, "invalid glTF file: image %zu has neither a uri nor a bufferView", number);
     }
     return true;
 }
@@ -233,7 +234,7 @@ static bool make_plain(struct document_work *work)
     strip(work->root);
     work->document->json = json_dumps(work->root, JSON_COMPACT);
     if (!work->document->json)
-        return wrong(work->why, "cannot load the model's JSON: out of memory");
+        return wrong(work->why, "cannot read the JSON part of the glTF model: out of memory");
     work->document->json_bytes = strlen(work->document->json);
     return true;
 }

@@ -20,9 +20,11 @@ bool document_range(const struct document_work *work, size_t buffer, uint64_t of
 {
     const struct document_bytes *b = &work->document->buffers[buffer];
     if (length > 0 && !b->at)
-        return wrong(work->why, "%s: buffer %zu has no data", what, buffer);
+        return wrong(work->why, "incomplete glTF file: %s refers to buffer %zu, which has no data", what, buffer);
     if (offset > b->size || length > b->size - offset)
-        return wrong(work->why, "%s: bytes %" PRIu64 "+%" PRIu64 " lie outside the buffer of %zu bytes", what, offset, length, b->size);
+        return wrong(work->why,
+                     "incomplete glTF file: %s: its bytes, from %" PRIu64 " on, %" PRIu64 " bytes, lie outside its buffer of %zu bytes",
+                     what, offset, length, b->size);
     *out = (struct model_bytes){ length ? b->at + offset : NULL, (size_t)length };
     return true;
 }

@@ -23,15 +23,16 @@ static bool take_attribute(struct document_work *work, const struct draco_mesh *
     json_t *attributes = json_object_get(primitive, "attributes"), *number = json_object_get(attributes, name);
     int component_type, width;
     if (!number)
-        return wrong(work->why, "%s: the Draco data has the attribute %.40s, which the primitive lacks", what, name);
+        return wrong(work->why, "invalid glTF file: %s lacks the attribute %.40s, which its Draco-compressed data has", what, name);
     json_t *accessor = json_copy(json_array_get(json_object_get(work->root, "accessors"), (size_t)json_integer_value(number)));
     size_t element = document_element_bytes(accessor, &component_type, &width), size = element * draco_mesh_vertex_count(mesh);
     unsigned char *own = element ? mem_try_array(size + 1, 1) : NULL;
     if (!own || !draco_mesh_attribute(mesh, id, component_type, width, own)) {
         mem_free(own);
         json_decref(accessor);
-        return wrong(work->why, "%s: the Draco data does not have %.40s as attribute %u with %d components of type %d", what, name, id,
-                     width, component_type);
+        return wrong(work->why,
+                     "invalid glTF file: %s: the Draco-compressed data lacks %.40s as attribute %u with %d components of type %d", what,
+                     name, id, width, component_type);
     }
     json_object_set_new(accessor, "count", json_integer(draco_mesh_vertex_count(mesh)));
     json_object_set_new(attributes, name, json_integer((json_int_t)add_accessor(work, accessor, own, size)));
@@ -43,7 +44,7 @@ static bool take_indices(struct document_work *work, const struct draco_mesh *me
     size_t count = 3 * (size_t)draco_mesh_triangle_count(mesh);
     uint32_t *own = mem_try_array(count + 1, sizeof(*own));
     if (!own)
-        return wrong(work->why, "%s: cannot decode %zu indices: out of memory", what, count);
+        return wrong(work->why, "%s: cannot decode %zu indices of Draco-compressed data: out of memory", what, count);
     draco_mesh_indices(mesh, own);
     json_t *accessor = json_pack("{s:i,s:I,s:s}", "componentType", 5125, "count", (json_int_t)count, "type", "SCALAR");
     size_t number = add_accessor(work, accessor, (unsigned char *)own, count * sizeof(*own));
@@ -61,14 +62,15 @@ static bool expand(struct document_work *work, json_t *primitive, const json_t *
     const char *name;
     json_t *id;
     if (mode && json_integer_value(mode) != MODE_TRIANGLES)
-        return wrong(work->why, "%s: Draco data with primitive mode %lld: only triangles are supported", what, json_integer_value(mode));
+        return wrong(work->why, "%s has Draco-compressed data of primitive mode %lld, but Plantcast supports only triangles (mode 4)", what,
+                     json_integer_value(mode));
     if (!document_range(work, (size_t)json_integer_value(json_object_get(view, "buffer")),
                         (uint64_t)json_integer_value(json_object_get(view, "byteOffset")),
                         (uint64_t)json_integer_value(json_object_get(view, "byteLength")), what, &from))
         return false;
     struct draco_mesh *mesh = draco_mesh_decode(from.at, from.size, draco_why);
     if (!mesh)
-        return wrong(work->why, "%s: KHR_draco_mesh_compression: %s", what, draco_why);
+        return wrong(work->why, "%s cannot be decompressed (KHR_draco_mesh_compression): %s", what, draco_why);
     bool good = take_indices(work, mesh, primitive, what);
     json_object_foreach(json_object_get(extension, "attributes"), name, id)
     {

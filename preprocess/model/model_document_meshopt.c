@@ -35,17 +35,17 @@ static bool shape_good(const struct meshopt_view *p, const char *what, char *why
 {
     bool index = p->mode == TRIANGLES || p->mode == INDICES;
     if (p->mode < 0 || p->filter < 0)
-        return wrong(why, "%s: EXT_meshopt_compression: the mode or filter is unknown", what);
+        return wrong(why, "invalid glTF file: %s: EXT_meshopt_compression has an unknown mode or filter", what);
     if (index ? (p->stride != 2 && p->stride != 4) || p->filter != NONE || (p->mode == TRIANGLES && p->count % 3 != 0)
               : p->stride < 4 || p->stride > 256 || p->stride % 4 != 0)
-        return wrong(why, "%s: EXT_meshopt_compression: %" PRIu64 " elements of %" PRIu64 " bytes cannot be of mode %s", what, p->count,
-                     p->stride, modes[p->mode]);
+        return wrong(why, "invalid glTF file: %s: EXT_meshopt_compression: %" PRIu64 " elements of %" PRIu64 " bytes cannot be of mode %s",
+                     what, p->count, p->stride, modes[p->mode]);
     if ((p->filter == OCTAHEDRAL && p->stride != 4 && p->stride != 8) || (p->filter == QUATERNION && p->stride != 8))
-        return wrong(why, "%s: EXT_meshopt_compression: filter %s is not allowed for elements of %" PRIu64 " bytes", what,
-                     filters[p->filter], p->stride);
+        return wrong(why, "invalid glTF file: %s: EXT_meshopt_compression: filter %s is not allowed for elements of %" PRIu64 " bytes",
+                     what, filters[p->filter], p->stride);
     if (p->count > UINT32_MAX || p->count * p->stride > (uint64_t)p->from.size * BYTES_PER_BYTE)
-        return wrong(why, "%s: EXT_meshopt_compression: %zu bytes cannot hold %" PRIu64 " elements of %" PRIu64 " bytes", what,
-                     p->from.size, p->count, p->stride);
+        return wrong(why, "invalid glTF file: %s: EXT_meshopt_compression: %zu bytes cannot hold %" PRIu64 " elements of %" PRIu64 " bytes",
+                     what, p->from.size, p->count, p->stride);
     return true;
 }
 
@@ -79,14 +79,15 @@ static bool expand(struct document_work *work, const char *what, json_t *view, c
         return false;
     size_t size = (size_t)(p.count * p.stride);
     if (size != (size_t)json_integer_value(json_object_get(view, "byteLength")))
-        return wrong(work->why, "%s: EXT_meshopt_compression: %zu bytes when decoded, but byteLength is %lld", what, size,
-                     json_integer_value(json_object_get(view, "byteLength")));
+        return wrong(work->why, "invalid glTF file: %s: EXT_meshopt_compression: the data decodes to %zu bytes, but byteLength is %lld",
+                     what, size, json_integer_value(json_object_get(view, "byteLength")));
     unsigned char *own = mem_try_array(size + 1, 1);
     if (!own)
-        return wrong(work->why, "%s: cannot decode %zu bytes: out of memory", what, size);
+        return wrong(work->why, "%s: cannot decode %zu bytes of meshopt-compressed data: out of memory", what, size);
     if (size > 0 && !decode(&p, own)) {
         mem_free(own);
-        return wrong(work->why, "%s: EXT_meshopt_compression: the %zu bytes of compressed data are damaged", what, p.from.size);
+        return wrong(work->why, "invalid glTF file: %s: the %zu bytes of compressed data (EXT_meshopt_compression) are damaged", what,
+                     p.from.size);
     }
     json_object_set_new(view, "buffer", json_integer((json_int_t)document_add_buffer(work, (struct document_bytes){ own, size, own })));
     json_object_set_new(view, "byteOffset", json_integer(0));

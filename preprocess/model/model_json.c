@@ -17,20 +17,21 @@ static bool glb_good(struct model_bytes file, struct model_bytes *json, struct m
 {
     const unsigned char *b = file.at;
     if (file.size < 20)
-        return wrong(why, "truncated GLB: %zu bytes", file.size);
+        return wrong(why, "the GLB file is truncated: it has only %zu bytes", file.size);
     uint32_t size = read_u32(b + 8), json_bytes = read_u32(b + 12);
     if (read_u32(b + 4) != 2)
-        return wrong(why, "GLB version %u, expected 2", read_u32(b + 4));
+        return wrong(why, "the GLB file has version %u; Plantcast supports only version 2", read_u32(b + 4));
     if (size > file.size)
-        return wrong(why, "truncated GLB: %zu bytes of %u", file.size, size);
+        return wrong(why, "the GLB file is truncated: it has %zu of %u bytes", file.size, size);
     if (size < 20 || memcmp(b + 16, "JSON", 4) != 0 || json_bytes > size - 20)
-        return wrong(why, "GLB: the first chunk is not JSON, or is truncated");
+        return wrong(why, "the GLB file is damaged: its first chunk is not JSON, or is truncated");
     *json = (struct model_bytes){ b + 20, json_bytes };
     size_t at = 20 + (size_t)json_bytes;
     while (!binary->at && size - at >= 8) {
         uint32_t bytes = read_u32(b + at);
         if (bytes > size - at - 8)
-            return wrong(why, "GLB: the chunk at byte %zu has %u bytes, but only %zu are left", at, bytes, size - at - 8);
+            return wrong(why, "the GLB file is damaged: the chunk at byte %zu should have %u bytes, but only %zu follow", at, bytes,
+                         size - at - 8);
         if (memcmp(b + at + 4, "BIN\0", 4) == 0)
             *binary = (struct model_bytes){ b + at + 8, bytes };
         at += 8 + (size_t)bytes;
@@ -54,7 +55,7 @@ static bool depth_good(struct model_bytes json, char *why)
             quoted = true;
         } else if (c == '{' || c == '[') {
             if (++depth > MAX_LEVELS)
-                return wrong(why, "JSON is nested deeper than %d levels", MAX_LEVELS);
+                return wrong(why, "the JSON part of the glTF model is nested deeper than %d levels", MAX_LEVELS);
         } else if (c == '}' || c == ']') {
             depth--;
         }
@@ -79,9 +80,9 @@ json_t *model_json_load(struct model_bytes file, struct model_bytes *binary, cha
         return NULL;
     json_t *root = json_loadb((const char *)json.at, json.size, 0, &error);
     if (!root) {
-        wrong(why, "JSON: line %d, column %d: %s", error.line, error.column, error.text);
+        wrong(why, "the JSON part of the glTF model is invalid: line %d, column %d: %s", error.line, error.column, error.text);
     } else if (!json_is_object(root)) {
-        wrong(why, "JSON: the top-level value is not an object");
+        wrong(why, "invalid glTF file: its JSON part is not an object");
         json_decref(root);
         root = NULL;
     }

@@ -45,16 +45,16 @@ static const char *find_inside(const char *folder, const char *name, char **real
     struct stat st;
     size_t length = strcmp(folder, "/") == 0 ? 0 : strlen(folder);
     if (name[0] == '/')
-        return "the name is an absolute path";
+        return "absolute paths are not allowed";
     if (strstr(name, "://"))
-        return "the name is a URL";
+        return "URLs are not supported";
     char *joined = mem_printf("%s/%s", folder, name);
     *real = realpath(joined, NULL);
     mem_free(joined);
     if (!*real)
         return errno == ENOENT ? "no such file" : strerror(errno);
     if (strncmp(*real, folder, length) != 0 || (*real)[length] != '/')
-        return "the name leads out of the model's folder";
+        return "the file is outside the model's folder";
     if (stat(*real, &st) != 0 || !S_ISREG(st.st_mode))
         return "not a regular file";
     return NULL;
@@ -115,14 +115,16 @@ static unsigned char *base64_decode(const char *text, size_t *size, char *why)
     unsigned char *out = mem_try_array(length / 4 * 3 + 3, 1);
     unsigned bits = 0;
     if (!out || length % 4 == 1) {
-        wrong(why, out ? "data URI: the base64 data of %zu digits are truncated" : "data URI: cannot decode %zu base64 digits: out of "
-                                                                                   "memory", length);
+        wrong(why,
+              out ? "invalid glTF file: the base64 data in a data URI is truncated after %zu digits"
+                  : "cannot decode %zu base64 digits of a data URI of the glTF model: out of memory",
+              length);
         goto error;
     }
     for (size_t i = 0; i < length; i++) {
         int digit = base64_digit(text[i]);
         if (digit < 0) {
-            wrong(why, "data URI: byte %zu is not a base64 digit", i);
+            wrong(why, "invalid glTF file: byte %zu of a data URI is not a base64 digit", i);
             goto error;
         }
         bits = (bits << 6 | (unsigned)digit) & 0xffffff;
@@ -147,7 +149,7 @@ unsigned char *model_uri_read(const char *folder, const char *uri, size_t *size,
         const char *comma = strchr(uri, ',');
         if (comma && comma - uri >= 7 && strncmp(comma - 7, ";base64", 7) == 0)
             return base64_decode(comma + 1, size, why);
-        wrong(why, "data URI: '%.40s' is not encoded as base64", uri);
+        wrong(why, "invalid glTF file: the data URI '%.40s' is not encoded as base64", uri);
         return NULL;
     }
     char *name = mem_strdup(uri);

@@ -408,7 +408,7 @@ static bool make_influence(struct build *build)
     if (!influence_file_make(build->log, build->workers, &wanted, why))
         return wrong(build->why, "%s", why);
     double seconds = seconds_since(&since_ns);
-    log_info(build->log, "computed the influence of %zu sensors at %u vertices in %.1f s", input->sensor_count, g->vertex_count, seconds);
+    log_info(build->log, "computed the weights of %zu sensors at %u vertices in %.1f s", input->sensor_count, g->vertex_count, seconds);
     return true;
 }
 
@@ -484,12 +484,13 @@ static bool lay_out(struct build *build, const struct clusters *clusters)
     wrong(build->why, "cannot create the asset's prepared file: out of memory");
     void *bytes = asset_build(&parts, &size);
     if (bytes && build->write_error)
-        return wrong(build->why, "the asset's distances cannot be written to %s: %s", input->folder, strerror(build->write_error));
+        return wrong(build->why, "the distances from the asset's sensors cannot be written to %s: %s", input->folder,
+                     strerror(build->write_error));
     if (!bytes)
         return false;
     /* check the asset file as a reader would, so that an invalid file is never written */
     return asset_view_fresh(&output->view, bytes, size, view_why) ||
-           wrong(build->why, "the asset's prepared file would be invalid: %s", view_why);
+           wrong(build->why, "plantcast-prep computed an invalid file for this asset: %s", view_why);
 }
 
 static bool build_file(struct build *build)

@@ -569,7 +569,8 @@ static void write_manifest(struct prepare_run *run)
     }
     int status = folder_finish(run->log, run->params->folder, entries, prepare->asset_count, run->failed ? NULL : &prepare->removed);
     if (status != 0)
-        fail(run, prepare->plant->files.path, 0, "%s: the manifest cannot be written: %s", run->params->folder, strerror(-status));
+        fail(run, prepare->plant->files.path, 0, "%s: this list of the prepared files (manifest) cannot be written: %s",
+             run->params->folder, strerror(-status));
     mem_free(entries);
     mem_free(tags);
 }

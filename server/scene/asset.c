@@ -41,18 +41,19 @@ struct asset *asset_open(struct log *log, const char *path)
     char why[200];
     void *map = map_file(path, &bytes);
     if (map == MAP_FAILED) {
-        log_err(log, "asset file %s: cannot be read: %s", path, strerror(errno));
+        log_err(log, "%s: this prepared asset file cannot be read: %s", path, strerror(errno));
         return NULL;
     }
     struct asset *asset = mem_new(sizeof(*asset));
     *asset = (struct asset){ .path = mem_strdup(path), .map = map, .bytes = bytes, .refs = 1 };
     if (!asset_view_init(&asset->view, map, bytes, why)) {
-        log_err(log, "asset file %s: %s; prepare the plant again", path, why);
+        log_err(log, "%s: %s; run plantcast-prep again", path, why);
         asset_unref(&asset);
         return NULL;
     }
     if (!asset_view_unpack(&asset->view, &asset->distances)) {
-        log_err(log, "asset file %s: cannot unpack the distances of %u sensors: out of memory", path, asset->view.header->sensor_count);
+        log_err(log, "%s: cannot unpack the distances from %u sensors in this prepared asset file: out of memory", path,
+                asset->view.header->sensor_count);
         asset_unref(&asset);
         return NULL;
     }
@@ -72,7 +73,7 @@ bool asset_open_influence(struct log *log, struct asset *asset)
     bool good = cache_file_open(&asset->influence_file, path, INFLUENCE_MAGIC, header->key, why) &&
                 influence_view_init(&asset->influence, asset->influence_file.bytes, asset->influence_file.count, header->vertex_count, why);
     if (!good) {
-        log_err(log, "influence file %s: %s; prepare the plant again", path, why);
+        log_err(log, "%s (the weights of an asset's sensors): %s; run plantcast-prep again", path, why);
         asset->influence = (struct influence_view){ 0 };
         cache_file_close(&asset->influence_file);
     }

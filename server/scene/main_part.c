@@ -85,12 +85,15 @@ static void log_outside(struct log *log, const struct scene *scene, size_t all)
         if (!asset->stray)
             continue;
         logged++;
-        log_warn(log, "first view: asset %s: a part at %.7g, %.7g, %.7g lies %.3g m from the rest of the plant and is outside the view",
-                 scene->plant->assets[i].id, asset->stray_at_m[0], asset->stray_at_m[1], asset->stray_at_m[2], asset->stray_away_m);
+        log_warn(
+            log,
+            "the view of the whole plant leaves out a part of asset %s at %.7g, %.7g, %.7g, which lies %.3g m from the rest of the plant",
+            scene->plant->assets[i].id, asset->stray_at_m[0], asset->stray_at_m[1], asset->stray_at_m[2], asset->stray_away_m);
     }
-    log_warn(log,
-             "first view: %zu of %zu triangles are outside the view, in %d asset%s: check models for stray vertices, and check placements",
-             scene->outside.triangles, all, scene->outside.assets, scene->outside.assets == 1 ? "" : "s");
+    log_warn(
+        log,
+        "the view of the whole plant leaves out %zu of %zu triangles, in %d asset%s: check models for stray vertices, and check placements",
+        scene->outside.triangles, all, scene->outside.assets, scene->outside.assets == 1 ? "" : "s");
 }
 
 void main_part_find(struct log *log, struct scene *scene)

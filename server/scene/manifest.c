@@ -40,7 +40,8 @@ static bool read_entry(struct log *log, struct manifest *manifest, size_t index,
     const char *id = json_string_value(json_object_get(item, "id")), *file = json_string_value(json_object_get(item, "file"));
     const char *recipe = json_string_value(json_object_get(item, "recipe"));
     if (!id || !file_name_good(file) || !recipe) {
-        log_err(log, "%s: asset %zu: expected the members id, file and recipe; prepare the plant again", manifest->path, index);
+        log_err(log, "%s: damaged list of prepared files: asset number %zu has no id, file or recipe; run plantcast-prep again",
+                manifest->path, index);
         return false;
     }
     const char *surface = json_string_value(json_object_get(item, "surface"));
@@ -69,13 +70,13 @@ bool manifest_read(struct log *log, const char *folder, struct manifest *manifes
     json_t *root = load(log, manifest->path);
     bool good = root;
     if (good && json_integer_value(json_object_get(root, "format")) != MANIFEST_FORMAT) {
-        log_err(log, "%s: the prepared files are not in format %d, which this program requires; prepare the plant again", manifest->path,
+        log_err(log, "%s: the prepared files are not in format %d, which this program requires; run plantcast-prep again", manifest->path,
                 MANIFEST_FORMAT);
         good = false;
     }
     const json_t *assets = json_object_get(root, "assets");
     if (good && !json_is_array(assets)) {
-        log_err(log, "%s: expected a list of assets; prepare the plant again", manifest->path);
+        log_err(log, "%s: damaged list of prepared files: expected a list of assets; run plantcast-prep again", manifest->path);
         good = false;
     }
     if (good)

@@ -42,14 +42,14 @@ static bool sensors_fit(struct log *log, const struct plant *plant, const struct
 {
     const struct asset_view *view = &asset->file->view;
     if (view->header->sensor_count != count) {
-        log_err(log, "asset %s: the prepared file %s has %u sensors, but the tag list has %zu; prepare the plant again", asset->plant->id,
+        log_err(log, "asset %s: the prepared file %s has %u sensors, but the tag list has %zu; run plantcast-prep again", asset->plant->id,
                 asset->file->path, view->header->sensor_count, count);
         return false;
     }
     for (size_t i = 0; i < count; i++) {
         if (same_place(view->header, &view->sensors[i], &sensors[i]))
             continue;
-        log_err(log, "asset %s: the tag list has another position for sensor %s than the prepared file %s; prepare the plant again",
+        log_err(log, "asset %s: the tag list has another position for sensor %s than the prepared file %s; run plantcast-prep again",
                 asset->plant->id, plant->tags[sensors[i].tag].name, asset->file->path);
         return false;
     }
@@ -89,7 +89,7 @@ static bool influence_fits(struct log *log, const struct plant *plant, const str
         /* without sensors, plantcast-prep writes no influence file, so no heat distances are required */
         bool heat = placed > 0 && group->heat && !has_entry(log, asset, g, INFLUENCE_HEAT, placed);
         if (heat || (placed > 0 && group->directed && !has_entry(log, asset, g, INFLUENCE_TRANSPORT, placed))) {
-            log_err(log, "asset %s: the prepared %s for group %s are missing, damaged or outdated; prepare the plant again",
+            log_err(log, "asset %s: the prepared %s for sensor group %s are missing, damaged or outdated; run plantcast-prep again",
                     asset->plant->id, heat ? "heat distances" : "directions", group->id);
             return false;
         }
@@ -97,7 +97,7 @@ static bool influence_fits(struct log *log, const struct plant *plant, const str
             if (!plant_prepares(group, (enum interpolation)i))
                 continue;
             if (!asset_open_influence(log, asset->file)) {
-                log_err(log, "asset %s: the prepared influence file is missing, damaged or outdated; prepare the plant again",
+                log_err(log, "asset %s: the prepared file of sensor weights is missing, damaged or outdated; run plantcast-prep again",
                         asset->plant->id);
                 return false;
             }
@@ -108,8 +108,8 @@ static bool influence_fits(struct log *log, const struct plant *plant, const str
                 (!gp || (entry->deviations && is_as_stated(gp, entry))))
                 continue;
             log_err(log,
-                    "asset %s: the influence of the sensors in group %s was prepared with another tag list, `disc_m`, `gp`, or "
-                    "metal wall (`thickness_m`, `conductivity`, `heat_transfer`); prepare the plant again",
+                    "asset %s: the sensor weights of group %s are outdated: the tag list, `disc_m`, `gp`, `thickness_m`, `conductivity` or "
+                    "`heat_transfer` was changed; run plantcast-prep again",
                     asset->plant->id, group->id);
             return false;
         }
@@ -138,8 +138,8 @@ static bool recipe_fits(struct log *log, const struct plant *plant, uint64_t *ha
     if (plant_recipe(asset, hashes[index]) == entry->recipe)
         return true;
     log_err(log,
-            "asset %s: the model %s, or the asset's 'nodes', 'units', 'scale' or 'up', has changed since the plant was prepared; "
-            "prepare the plant again",
+            "asset %s: the model %s, or the asset's 'nodes', 'units', 'scale' or 'up', has changed since plantcast-prep ran; run "
+            "plantcast-prep again",
             asset->id, asset->model);
     return false;
 }
@@ -196,7 +196,7 @@ static void place_sensor(const struct scene_asset *asset, int column, int tag, s
    asset is not drawn and does not extend the plant's box. */
 static bool create_missing(struct log *log, struct scene_asset *asset, const struct manifest_entry *entry)
 {
-    log_warn(log, "asset %s cannot be shown: %s; repair its model, then prepare the plant again", asset->plant->id, entry->missing);
+    log_warn(log, "asset %s cannot be shown: %s; repair its model, then run plantcast-prep again", asset->plant->id, entry->missing);
     asset->missing = mem_strdup(entry->missing);
     asset->file = asset_stand_in();
     if (asset->file)
@@ -211,7 +211,7 @@ static bool create_asset(struct log *log, struct scene *scene, int index)
     struct scene_asset *asset = &scene->assets[index];
     struct plant_sensor *sensors = NULL;
     if (!asset->file) {
-        log_err(log, "asset %s: the prepared file is missing, damaged or outdated; prepare the plant again", asset->plant->id);
+        log_err(log, "asset %s: the prepared file is missing, damaged or outdated; run plantcast-prep again", asset->plant->id);
         return false;
     }
     size_t count = plant_sensors(scene->plant, index, &sensors);
@@ -287,7 +287,7 @@ static bool find_file(struct file_uses *uses, const struct manifest *manifest, u
     asset->plant = &scene->plant->assets[index];
     const struct manifest_entry *entry = manifest_find(manifest, asset->plant->id);
     if (!entry) {
-        log_err(log, "asset %s is not in %s; prepare the plant again", asset->plant->id, manifest->path);
+        log_err(log, "asset %s is not in the list of prepared assets, %s; run plantcast-prep again", asset->plant->id, manifest->path);
         return false;
     }
     if (entry->missing)
@@ -353,7 +353,10 @@ static struct scene *create(struct log *log, const struct plant *plant, const ch
     bool good = create_assets(log, scene, &manifest);
     manifest_finish(&manifest);
     if (good && !bound_missing(scene)) {
-        log_err(log, "%s: none of the assets can be shown", prepared_folder);
+        log_err(
+            log,
+            "%s: plantcast-prep could not prepare any asset, so there is nothing to show: repair the models, then run plantcast-prep again",
+            prepared_folder);
         good = false;
     }
     if (good) {
@@ -373,8 +376,10 @@ struct scene *scene_create(struct log *log, const struct plant *plant, const cha
     struct scene *scene = create(log, plant, prepared_folder);
     char *own = scene ? NULL : plant_service_folder(plant->files.path, "prepared");
     if (own && !strcmp(own, prepared_folder))
-        log_err(log, "%s: the prepared files in %s cannot be used; the service prepares them when it starts: restart it, or read its log",
-                plant->files.path, prepared_folder);
+        log_err(
+            log,
+            "%s: the prepared files in %s cannot be used; the service prepares them when it starts: restart the service, or read its log",
+            plant->files.path, prepared_folder);
     else if (!scene)
         log_err(log, "%s: the prepared files in %s cannot be used; run plantcast-prep -o %s %s", plant->files.path, prepared_folder,
                 prepared_folder, plant->files.path);

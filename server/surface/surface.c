@@ -73,7 +73,7 @@ static bool no_surface(const struct surface *surface, char *why, const char *fmt
     if (why)
         memcpy(why, text, sizeof(text));
     else
-        log_err(surface->log, "cannot build a surface from %zu vertices: %s", surface->vertex_count, text);
+        log_err(surface->log, "cannot build the surface of an asset from its %zu vertices: %s", surface->vertex_count, text);
     return false;
 }
 
@@ -90,9 +90,11 @@ static bool weld(struct surface *surface, const float (*positions)[3], const uin
     report->welded_vertices = surface->mesh.point_count;
     report->border_edges = border_edges(&surface->mesh);
     report->components = components_of(&surface->mesh);
-    return surface->mesh.tri_count > 0 || no_surface(surface, why,
-                                                     "none of %zu triangles has an area after merging points within %g m of each other",
-                                                     triangle_count, size_m * WELD_OF_SIZE);
+    return surface->mesh.tri_count > 0 ||
+           no_surface(
+               surface, why,
+               "none of the asset's %zu triangles has an area after points within %g m of each other are merged: check the model's unit",
+               triangle_count, size_m * WELD_OF_SIZE);
 }
 
 static void follow(struct surface *surface, const uint32_t *target)
@@ -123,7 +125,8 @@ static bool close_seams(struct surface *surface, char *why)
     note_bridges(surface, &made);
     mem_free(target);
     return made.k >= 0 ||
-           no_surface(surface, why, "out of memory while closing gaps between %zu surface points", surface->mesh.point_count);
+           no_surface(surface, why, "cannot build the surface of an asset: out of memory while closing gaps between %zu surface points",
+                      surface->mesh.point_count);
 }
 
 /* Moves visible triangles to the front of the mesh, and hidden[] with them. Returns the number of visible triangles. */

@@ -121,7 +121,7 @@ bool surface_check(struct surface *surface, const struct surface_field *field)
     report->factor_s = (double)(factored_ns - start_ns) / NS_PER_S;
     report->check_s = (double)(clock_mono_ns() - factored_ns) / NS_PER_S;
     if (check.failed)
-        log_err(surface->log, "cannot check the distances from %zu sensors along a surface: out of memory", check.count);
+        log_err(surface->log, "cannot check the distances from %zu sensors along an asset's surface: out of memory", check.count);
     mem_free(check.disagreement);
     return !check.failed;
 }

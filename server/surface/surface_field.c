@@ -118,8 +118,8 @@ static bool solve_all(struct solve *solve)
     for (size_t s = 0; s < solve->count && !workers; s += BLOCK)
         solve_block(solve, s, s + BLOCK < solve->count ? s + BLOCK : solve->count);
     if (solve->failed)
-        log_err(solve->surface->log, "cannot compute distances from %zu sensors to %zu surface points: out of memory", solve->count,
-                solve->surface->mesh.point_count);
+        log_err(solve->surface->log, "cannot compute the distances from %zu sensors to an asset's %zu surface points: out of memory",
+                solve->count, solve->surface->mesh.point_count);
     return !solve->failed;
 }
 
@@ -157,7 +157,7 @@ bool surface_field_init(struct surface_field *field, const struct surface *surfa
         field->source_tris[s] = field->sources[s].tri;
     solve.hits = field->sources;
     if (!field->distances_m)
-        log_err(surface->log, "cannot compute distances from %zu sensors to %zu surface points: out of memory", point_count,
+        log_err(surface->log, "cannot compute the distances from %zu sensors to an asset's %zu surface points: out of memory", point_count,
                 surface->mesh.point_count);
     if (field->distances_m && solve_all(&solve))
         return true;

@@ -133,7 +133,8 @@ struct vertex_embedding *vertex_embedding_create(const struct surface *surface, 
     struct embedding_job job = { .embedding = embedding, .positions_m = positions_m };
     *embedding = (struct vertex_embedding){ surface, count, mem_try_array(count, sizeof(*embedding->at)) };
     if (!embedding->at || !table_init(&job.table, &surface->mesh) || !find_normals(&job, normals, triangles, triangle_count)) {
-        log_err(surface->log, "cannot map %zu vertices onto a surface of %zu points: out of memory", count, surface->mesh.point_count);
+        log_err(surface->log, "cannot map an asset's %zu vertices onto its surface of %zu points: out of memory", count,
+                surface->mesh.point_count);
         vertex_embedding_destroy(&embedding);
     } else if (surface->workers) {
         workers_for(surface->workers, count, GRAIN, find_some, &job);

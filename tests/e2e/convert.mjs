@@ -89,6 +89,6 @@ test('mistakes in the plant file\'s key convert are reported', { skip }, () => w
     write('true', '}\n  - { model: plate.glb, from: plate.glb, command: ""');
     const said = check();
     assert.match(said, /:4:\d+: error: .*command/);
-    assert.match(said, /from: expected another file than that of model/);
-    assert.match(said, /model: '.*plate\.glb' is created twice \(first at line 3\)/);
+    assert.match(said, /from: must name another file than `model`/);
+    assert.match(said, /model: another conversion already creates '.*plate\.glb' \(line 3\)/);
 }));

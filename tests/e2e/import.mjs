@@ -132,12 +132,12 @@ test('a real export with broken attributes or numbers gets one error line, and l
     for (let at = good.indexOf(id); at >= 0; at = good.indexOf(id, at + 4))
         notFinite.writeFloatBE(NaN, at + 32); // replaces the first number of each primitive's transformation matrix by NaN
     for (const [bytes, attributes, why] of [
-        [good, text.subarray(0, text.length >> 1), /a\.att: line \d+: the file ends before the END of \d+ elements/],
-        [good, `${head}${'NEW A\r\n'.repeat(100000)}`, /a\.att: line \d+: elements are nested more than \d+ deep/],
-        [good, `${head}${'END\r\n'.repeat(1000)}`, /a\.att: line \d+: END without an element \(NEW\)/],
-        [good, Buffer.from(text.map((byte, i) => (i % 53 === 17 ? 255 - byte : byte))), /a\.att: line \d+: /],
+        [good, text.subarray(0, text.length >> 1), /a\.att: line \d+: the attribute file ends before the END of \d+ elements/],
+        [good, `${head}${'NEW A\r\n'.repeat(100000)}`, /a\.att: line \d+ of the attribute file: elements are nested more than \d+ deep/],
+        [good, `${head}${'END\r\n'.repeat(1000)}`, /a\.att: line \d+ of the attribute file: END without an element \(NEW\)/],
+        [good, Buffer.from(text.map((byte, i) => (i % 53 === 17 ? 255 - byte : byte))), /a\.att: line \d+( of the attribute file)?: /],
         [good, '', /a\.att: .*no elements/], [good, 'hello', /a\.att: .*no elements/], [good, Buffer.alloc(5000), /a\.att: .*no elements/],
-        [good.subarray(0, good.length >> 1), text, /byte \d+: the file ends within RVM chunk/],
+        [good.subarray(0, good.length >> 1), text, /byte \d+: the RVM file is truncated: /],
         [notFinite, text, /none of the model's \d+ primitives can be shown: .*infinite or invalid/],
     ]) {
         writeFileSync(model, bytes);
@@ -197,7 +197,8 @@ test('compressed models are unpacked, or refused in one line', unpackable, () =>
 test('an unreadable model gets one error line, and leaves no files', { skip: notBuilt }, () => inFolder((folder) => {
     const out = join(folder, 'plant');
     const cases = [['empty.rvm', '', 'byte 0: not an RVM file'], ['text.rvm', 'ISO-10303-21;', 'byte 0: not an RVM file'],
-        ['short.rvm', Buffer.from('\0\0\0H\0\0\0E\0\0\0A\0\0\0D\0\0\x01\0\0\0\0\x01', 'latin1'), 'the file ends within RVM chunk HEAD']];
+        ['short.rvm', Buffer.from('\0\0\0H\0\0\0E\0\0\0A\0\0\0D\0\0\x01\0\0\0\0\x01', 'latin1'),
+            'the RVM file is truncated: chunk HEAD should extend to byte 256']];
     const gltf = (rest) => JSON.stringify({ asset: { version: '2.0' }, scene: 0, scenes: [{ nodes: [0] }], ...rest });
     const corner = (bytes, count) => gltf({ nodes: [{ mesh: 0 }], meshes: [{ primitives: [{ attributes: { POSITION: 0 } }] }],
         accessors: [{ componentType: 5126, count, type: 'VEC3', bufferView: 0, min: [0, 0, 0], max: [1, 1, 1] }],
@@ -213,7 +214,7 @@ test('an unreadable model gets one error line, and leaves no files', { skip: not
         ['nan.gltf', corner(notFinite, 3), 'element 1 is infinite or not a number'],
         ['wire.gltf', corner(Buffer.alloc(36), 3).replace('"POSITION":0}', '"POSITION":0},"mode":3'), 'has no triangles'],
         ['out.gltf', gltf({ scenes: [{ nodes: [] }], buffers: [{ byteLength: 4, uri: '../../../etc/passwd' }] }),
-            "leads out of the model's folder"]);
+            "the file is outside the model's folder"]);
     for (const [name, bytes, why] of cases) {
         writeFileSync(join(folder, name), bytes);
         const said = run('plantcast', 'import', join(folder, name), '-o', out);

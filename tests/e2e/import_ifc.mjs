@@ -198,9 +198,9 @@ test('an element placed at an intersection of grid axes is imported in place, or
         assert.ok(near(found.centre, [x, 0.9, 0.055]) && near(found.size, size), JSON.stringify(found));
         assert.doesNotMatch(found.stdout, /error/);
     }
-    assert.match(imported('IFC4', 'IFCGRIDPLACEMENT(#{meet},$)', '#{line}').stdout, new RegExp('error: at a wrong place, because a grid ' +
-        'placement is not computed \\(the axes of the grid placement do not meet\\): #\\d+ K-1 '
-        + '\\(IfcBuildingElementProxy, 0\\$PlantcastKinds0000004\\)'));
+    assert.match(imported('IFC4', 'IFCGRIDPLACEMENT(#{meet},$)', '#{line}').stdout, new RegExp('error: elements shown at a ' +
+        'wrong place, because a grid placement is not computed \\(this IFC placement cannot be computed: the two grid axes do ' +
+        'not meet\\): #\\d+ K-1 ' + '\\(IfcBuildingElementProxy, 0\\$PlantcastKinds0000004\\)'));
 }));
 
 test('broken IFC files are read or refused in one line, and leave no files', { skip }, () => inFolder((folder) => {

@@ -142,7 +142,8 @@ test('glTF: percent signs and accents in file names are decoded; unknown require
     assert.equal(status, 0, stderr);
     assert.match(stdout, new RegExp('left out: Plantcast does not support the glTF extension KHR_texture_basisu, which the file ' +
         'requires: the model is shown without it, because it affects only the look'));
-    assert.match(stdout, /left out: material 0 'paint': the base colour texture: the texture's image is missing: 'none\.png'/);
+    assert.match(stdout, new RegExp('left out: material 0 \'paint\': the base colour texture: the texture\'s image is missing, so the ' +
+        'texture is not shown: \'none\\.png\''));
     const ran = (program, ...args) => spawnSync(join(BIN, program), [...args, join(folder, 'plant/plant.yaml')], { encoding: 'utf8' });
     assert.match(ran('plantcastd', '--check').stdout,
         /not prepared yet \(no prepared files in .*\), so some things were not checked: glTF textures and extensions that /);
@@ -177,13 +178,13 @@ test('FBX: surfaces without placement, with two placements or without finite cor
     const ring = read(folder, 'ring.fbx', withModels(model(201, 'Drum\t1\tA') + model(202, 'Tank'),
         ['C: "OO",201,202', 'C: "OO",202,201', 'C: "OO",100,201']));
     assert.deepEqual(ring.lost, [{ id: '201', name: 'Drum 1 A', class: 'model', guid: '',
-        why: 'the model is not connected with the scene' }]);
+        why: 'this part is not shown, because the FBX file does not connect it with the scene' }]);
     const shared = read(folder, 'shared.fbx', withModels(model(201, 'Drum'), ['C: "OO",201,200', 'C: "OO",201,0', 'C: "OO",100,201']));
-    assert.deepEqual(shared.errors[0], { count: 1, text: 'model Drum has 2 parents: the model is shown below each parent' });
+    assert.deepEqual(shared.errors[0], { count: 1, text: 'FBX part Drum has 2 parents: the part is shown below each parent' });
     const twice = read(folder, 'twice.fbx', fbx().replace(/P: "Lcl Translation".*0,0,0/, (line) =>
         [5, 7].map((x) => line.replace('0,0,0', `${x},0,0`)).join('\n')));
     assert.deepEqual(twice.errors[0], { count: 1,
-        text: 'model Feed pump states property Lcl Translation more than once: the last value is used' });
+        text: 'in the FBX file, model Feed pump states property Lcl Translation more than once: the last value is used' });
     assert.ok(twice.json.nodes.some(({ matrix }) => matrix?.[12] === 7), JSON.stringify(twice.json.nodes));
     for (const number of ['-1.#IND', '1.#INF', '1.#QNAN0', 'nan'])
         assert.match(read(folder, 'nan.fbx', fbx().replace('a: 0,', `a: ${number},`)).out,
@@ -196,16 +197,17 @@ test('FBX, COLLADA and OBJ: shapes that are not read are reported', { skip }, ()
         .replace('    C: "OO",200,0', '    C: "OO",200,0\n    C: "OO",201,0\n    C: "OO",101,201');
     const { errors: fbxErrors, lost: fbxLost } = read(folder, 'a.fbx', nurbs), fbxTexts = fbxErrors.map(({ text }) => text);
     assert.deepEqual(fbxLost, [{ id: '', name: 'Tank shell', class: 'model', guid: '',
-        why: 'NURBS and patches are not read: export the model as polygons' }]);
+        why: 'Plantcast does not read NURBS and patches, so this part is not shown: export the model as polygons' }]);
     assert.ok(fbxTexts.includes('Assimp: FBX-DOM failed to read source object for incoming Model link, ignoring'), fbxTexts.join('; '));
     const hull = '<geometry id="h" name="Hull"><convex_mesh convex_hull_of="#g"/></geometry></library_geometries>';
     const { lost, errors } = read(folder, 'b.dae', dae().replace('</library_geometries>', hull).replace('</visual_scene>',
         '<node id="n8" name="Gone"><instance_geometry url="#zz"/></node></visual_scene>'));
     assert.deepEqual(lost, [{ id: 'h', name: 'Hull', class: 'geometry', guid: '',
-        why: 'convex hulls are not read: export the geometry as polygons' }]);
+        why: 'Plantcast does not read convex hulls, so this geometry is not shown: export the geometry as polygons' }]);
     assert.deepEqual(errors, [{ count: 1, text: 'Assimp: Collada: Unable to find geometry for ID "zz". Skipping.' }]);
     const free = read(folder, 'c.obj', `${obj()}cstype bezier\ndeg 3 3\nsurf 0 1 0 1 1 2 3 4\nparm u 0 1\nend\no Pipe axis\nl 1 2\n`);
-    assert.deepEqual(free.errors[0], { count: 1, text: 'free-form surfaces (surf) are not read: export the surfaces as polygons' });
+    assert.deepEqual(free.errors[0], { count: 1,
+        text: 'Plantcast does not read free-form surfaces (surf), so they are not shown: export the surfaces as polygons' });
     assert.match(free.out, /not shown: 1 nodes that consist only of lines or points: Pipe axis\n/);
 }));
 
@@ -250,7 +252,7 @@ test('glTF: nodes without triangles, and nodes in no scene, are reported', { ski
     assert.deepEqual(lost, [{ id: '#3', name: 'E-4', class: 'node', guid: '', why: 'the node\'s mesh has no triangles' }]);
     assert.match(out, /not shown: 2 nodes that consist only of lines or points: L-2, P-3\n/);
     assert.deepEqual(left_out, ['the file uses the glTF extension ACME_bent, which Plantcast does not support and ignores',
-        "not in the file's default scene: 1 node with a mesh, node 4 'S-5'"]);
+        "not shown, because not in the glTF file's default scene: 1 node with a mesh, node 4 'S-5'"]);
 }));
 
 test('glTF: the diffuse colour of old materials, unusual image types and unknown chunks are read',

@@ -156,7 +156,8 @@ test('parts in other files are found despite case, folders and escapes in their 
         assert.match(out, /3 parts in 3 places/);
         assert.ok(near(size, [0.0234, 0.2902, 0.0902]), JSON.stringify(size));
         assert.deepEqual(lost.map(({ name, why }) => [name, why]), [['Part 4', 'the part\'s shape is empty, or its file is missing']]);
-        assert.deepEqual(errors, [{ count: 1, text: 'referenced file gone.stp is not in the model\'s folder' }]);
+        assert.deepEqual(errors, [{ count: 1,
+            text: 'the model refers to file gone.stp, which is not in the model\'s folder, so its parts are not shown' }]);
     }));
 
 // Removes one statement of each kind from a STEP file. The import must report what is missing, or refuse the file with one

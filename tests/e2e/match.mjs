@@ -162,7 +162,7 @@ test('manual changes stay, and a second run changes nothing', { skip: notBuilt }
     writeFileSync(join(folder, 'match_rules.csv'), 'Tag,Equipment\n[,x\n');
     const said = run('plantcast', 'match', folder, list);
     assert.equal(said.status, 1);
-    assert.match(said.stderr, /match_rules\.csv: line 2: '\[' is not a valid regular expression/);
+    assert.match(said.stderr, /match_rules\.csv: line 2: column Tag: '\[' is not a valid regular expression/);
     rmSync(join(folder, 'match_rules.csv'));
     writeFileSync(join(folder, 'aliases.csv'), 'Alias,Equipment\nfeed tank,V-201\n');
     writeFileSync(list, `${readFileSync(list, 'utf8')}XT_7,degC,0,90,Feed tank shell\n`);
@@ -269,7 +269,7 @@ test('a killed, interrupted, concurrent or out-of-disk match leaves a valid plan
         held.stdin.end();
         await ended;
         assert.equal(refused.status, 1);
-        assert.match(refused.stderr, /^plantcast match: [^\n]*first: (flock|sh) \(process \d+\) is using the folder\n$/);
+        assert.match(refused.stderr, /^plantcast match: [^\n]*first: (flock|sh) \(process \d+\) is using the plant's folder\n$/);
         assert.deepEqual(filesOf(first), before);
         const elsewhere = join(folder, 'tags.csv');
         renameSync(join(first, 'tags.csv'), elsewhere);
@@ -285,8 +285,8 @@ async function startsWhole(folder, whole, filesOf, what) {
     const daemon = new Program('plantcastd', ['--port', '0', '--gl', 'osmesa', '--h264', 'off', join(folder, 'plant.yaml')]);
     try {
         await daemon.line(/ready http/);
-        assert.equal(daemon.said.match(/that had been interrupted/g)?.length, 1, daemon.said);
-        assert.match(daemon.said, new RegExp(`completed ${what} that had been interrupted`));
+        assert.equal(daemon.said.match(/which had been interrupted/g)?.length, 1, daemon.said);
+        assert.match(daemon.said, new RegExp(`completed ${what}, which had been interrupted`));
         assert.deepEqual(filesOf(folder), whole);
         assert.deepEqual(readdirSync(folder).filter((name) => /^\.(import|revision\.)/.test(name)), []);
     } finally {
@@ -382,7 +382,7 @@ test('two systems\' exports become a live picture', { skip: noData, timeout: 240
     writeFileSync(join(out, 'kepware.csv'), ROOM);
     const source = ['--modbus', `127.0.0.1:${tiny.modbusPort}`, '--byte-order', 'CDAB'];
     const said = good(run('plantcast', 'match', out, join(out, 'kepware.csv'), ...source));
-    assert.match(said.stdout, /10 tags: 9 sure, 0 likely, 1 none/);
+    assert.match(said.stdout, /10 tags; matches to equipment: 9 sure, 0 likely, 1 none/);
     assert.match(said.stdout, /1 tag is not in the tag list, because the tag is text/);
     const rows = table(join(out, 'tags.csv'));
     assert.deepEqual(rows.map(({ 'Tag Name': name, Asset, Group, Place }) => [name, Asset, Group, Place].join(' ')), [

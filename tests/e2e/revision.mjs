@@ -172,7 +172,7 @@ T6;temperature;second;TT-9;;;;;f
     boxes(model, [{ name: 'X', at: [100, 0, 0] }]);
     const other = run('plantcast', 'import', model, '-o', plant);
     assert.equal(other.status, 1);
-    assert.match(other.stderr, /the imported models contain no asset of this plant/);
+    assert.match(other.stderr, /the imported models contain none of the plant's assets/);
     // Importing a model file with a new name adds its assets to the plant and leaves the others.
     boxes(join(folder, 'n.gltf'), [{ name: 'G', at: [50, 0, 0] }, { name: 'A', at: [60, 0, 0] }]);
     good(run('plantcast', 'import', join(folder, 'n.gltf'), '-o', plant));

@@ -220,17 +220,17 @@ TEST(truncated_or_foreign_files_are_refused)
         refused(&f, cut < f.size ? f.size - cut : 0, "");
     }
     struct asset_bytes f = build(&good);
-    refused(&f, f.size - 64, "truncated: ");
+    refused(&f, f.size - 64, "truncated: the file has ");
     f = build(&good);
-    refused(&f, 100, "the file is truncated: 100 bytes, but the header alone has 360");
+    refused(&f, 100, "truncated to 100 bytes, but the header alone has 360");
     f = build(&good);
     f.header->file_bytes -= 64;
     refused(&f, f.size, "too long");
     f = build(&good);
     memcpy(f.bytes, "glTF", 4);
-    refused_sealed(&f, "magic");
-    REFUSED_HEADER(version = 5, "version 5, but this program reads version 6");
-    REFUSED_HEADER(header_bytes = 320, "header of 320 bytes");
+    refused_sealed(&f, "does not begin with");
+    REFUSED_HEADER(version = 5, "has format version 5, but this program reads version 6");
+    REFUSED_HEADER(header_bytes = 320, "the header has 320 bytes");
     f = build(&good);
     assert_false(asset_view_init(&view, f.bytes + 8, f.size - 8, why));
     assert_non_null(strstr(why, "aligned"));
@@ -250,7 +250,7 @@ TEST(every_flipped_bit_is_noticed)
     }
     assert_true(asset_view_init(&view, f.bytes, f.size, why));
     f.bytes[f.size - 1] ^= 1;
-    refused(&f, f.size, "checksum ");
+    refused(&f, f.size, "its checksum is ");
 }
 
 TEST(sections_out_of_bounds_are_refused)
@@ -262,23 +262,23 @@ TEST(sections_out_of_bounds_are_refused)
         REFUSED_HEADER(sections[i].offset = 0, "overlap another section");
         REFUSED_HEADER(sections[i].offset += 4, "section");
     }
-    REFUSED_HEADER(sections[ASSET_GEODESIC].bytes -= 4, "section geodesic: 1020 bytes, expected 1024");
-    REFUSED_HEADER(sensor_count = UINT32_MAX, "section sensors");
+    REFUSED_HEADER(sections[ASSET_GEODESIC].bytes -= 4, "section `geodesic` has 1020 bytes, expected 1024");
+    REFUSED_HEADER(sensor_count = UINT32_MAX, "section `sensors` has");
     REFUSED_HEADER(index_count = 8, "the number of indices, 8, is not a multiple of 3");
     REFUSED_HEADER(vertex_count = 0, "nothing to draw");
-    REFUSED(ASSET_NAMES, char, [5] = 'x', "the last name is not terminated");
+    REFUSED(ASSET_NAMES, char, [5] = 'x', "the last name does not end with a 0 byte");
 }
 
 TEST(wrong_vertices_are_refused)
 {
     REFUSED(ASSET_POSITIONS, float, [7] = NAN, "vertex 2: the position is infinite or not a number");
-    REFUSED(ASSET_POSITIONS, float, [7] = 9, "vertex 2: position 9 m lies outside the bounds 0..1 m");
+    REFUSED(ASSET_POSITIONS, float, [7] = 9, "vertex 2: coordinate 9 m lies outside the asset's bounding box, 0..1 m");
     REFUSED(ASSET_NORMALS, float, [2] = NAN, "vertex 0: the normal");
     REFUSED(ASSET_NORMALS, float, [5] = 0, "vertex 1: the normal has length 0, expected 1");
     REFUSED(ASSET_TEXCOORDS, float, [6] = INFINITY, "vertex 3: a texture coordinate");
     REFUSED(ASSET_SECOND_TEXCOORDS, float, [3] = NAN, "vertex 1: a texture coordinate");
     REFUSED_HEADER(origin_m[1] = INFINITY, "origin");
-    REFUSED_HEADER(bounds_min_m[1] = -INFINITY, "the bounds are infinite or not numbers");
+    REFUSED_HEADER(bounds_min_m[1] = -INFINITY, "the asset's bounding box is infinite or has invalid numbers");
 }
 
 TEST(wrong_primitives_and_levels_are_refused)
@@ -291,34 +291,36 @@ TEST(wrong_primitives_and_levels_are_refused)
             "primitive 1: starts at index 6 and has 2 indices, but the file has only 9");
     REFUSED(ASSET_PRIMITIVES, struct asset_primitive, [0].material = 1,
             "primitive 0: refers to material 1, but there are only 1 materials");
-    REFUSED(ASSET_PRIMITIVES, struct asset_primitive, [0].name = 6, "primitive 0: name at byte 6");
-    REFUSED(ASSET_LEVELS, struct asset_level, [1].vertex_count = 5, "level 1 uses the first 5 vertices, expected at most 4");
-    REFUSED(ASSET_LEVELS, struct asset_level, [0].vertex_count = 3, "level 0 uses the first 3 vertices, expected 4");
+    REFUSED(ASSET_PRIMITIVES, struct asset_primitive, [0].name = 6, "primitive 0: its name at byte 6");
+    REFUSED(ASSET_LEVELS, struct asset_level, [1].vertex_count = 5, "level of detail 1 uses the first 5 vertices, expected at most 4");
+    REFUSED(ASSET_LEVELS, struct asset_level, [0].vertex_count = 3, "level of detail 0 uses the first 3 vertices, expected 4");
     REFUSED(ASSET_LEVELS, struct asset_level, [1].first_primitive = 0,
-            "level 1: starts at primitive 0 and has 1 primitives, expected a start at primitive 1 of 2");
-    REFUSED(ASSET_LEVELS, struct asset_level, [1].primitive_count = UINT32_MAX, "level 1: starts at primitive");
-    REFUSED(ASSET_LEVELS, struct asset_level, [1].error_m = -1,
-            "level of detail 1 is damaged: its deviation from the model is -1 m, expected at least 0 m");
-    REFUSED(ASSET_LEVELS, struct asset_level, [0].added_count = 2, "level 0 adds 2 vertices, but only 1 vertices belong to this level");
+            "level of detail 1 starts at primitive 0 and has 1 primitives, expected a start at primitive 1 of 2");
+    REFUSED(ASSET_LEVELS, struct asset_level, [1].primitive_count = UINT32_MAX, "level of detail 1 starts at primitive");
+    REFUSED(ASSET_LEVELS, struct asset_level, [1].error_m = -1, "level of detail 1 deviates from the model by -1 m, expected at least 0 m");
+    REFUSED(ASSET_LEVELS, struct asset_level, [0].added_count = 2,
+            "level of detail 0 adds 2 vertices, but only 1 vertices belong to this level");
     struct asset_bytes f = build(&good);
     f.header->level_count = 1;
     f.header->sections[ASSET_LEVELS].bytes = sizeof(struct asset_level);
-    refused_sealed(&f, "the levels contain 1 of 2 primitives");
+    refused_sealed(&f, "only 1 of 2 primitives belong to a level of detail");
 }
 
 TEST(wrong_clusters_are_refused)
 {
     REFUSED(ASSET_CLUSTERS, struct asset_cluster, [1].first_index = 0,
-            "cluster 1 of 3: indices 0+3 lie outside the expected 3..6 (primitive 0)");
-    REFUSED(ASSET_CLUSTERS, struct asset_cluster, [1].index_count = 6, "cluster 1 of 3: indices 3+6 lie outside the expected 3..6");
-    REFUSED(ASSET_CLUSTERS, struct asset_cluster, [0].index_count = 0, "cluster 0 of 3: indices 0+0");
-    REFUSED(ASSET_CLUSTERS, struct asset_cluster, [2].index_count = 2, "cluster 2 of 3: indices 6+2");
+            "cluster 1 of 3 has indices 0+3, outside the expected range 3..6 (primitive 0)");
+    REFUSED(ASSET_CLUSTERS, struct asset_cluster, [1].index_count = 6, "cluster 1 of 3 has indices 3+6, outside the expected range 3..6");
+    REFUSED(ASSET_CLUSTERS, struct asset_cluster, [0].index_count = 0, "cluster 0 of 3 has indices 0+0");
+    REFUSED(ASSET_CLUSTERS, struct asset_cluster, [2].index_count = 2, "cluster 2 of 3 has indices 6+2");
     REFUSED(ASSET_CLUSTERS, struct asset_cluster, [1].high_m[2] = 0.4f,
-            "cluster 1: index 4 at 0.5 m lies outside the cluster's box 0..0.4 m");
-    REFUSED(ASSET_CLUSTERS, struct asset_cluster, [2].low_m[0] = NAN, "cluster 2: the box or cone is infinite or not a number");
-    REFUSED(ASSET_CLUSTERS, struct asset_cluster, [2].cone_cutoff = 1.5f, "cutoff 1.5 lies outside 0..1");
-    REFUSED(ASSET_CLUSTERS, struct asset_cluster, [2].cone_cutoff = 0.5f, "cluster 2: a normal lies outside the cluster's cone (0.8)");
-    REFUSED(ASSET_CLUSTERS, struct asset_cluster, [0].cone_axis[2] = 2, "cluster 0: the cone axis has length 2");
+            "cluster 1 of triangles: the vertex of index 4, at 0.5 m, lies outside the cluster's bounding box, 0..0.4 m");
+    REFUSED(ASSET_CLUSTERS, struct asset_cluster, [2].low_m[0] = NAN,
+            "cluster 2 of triangles: the bounding box or normal cone has invalid numbers");
+    REFUSED(ASSET_CLUSTERS, struct asset_cluster, [2].cone_cutoff = 1.5f, "cutoff 1.5 is outside 0..1");
+    REFUSED(ASSET_CLUSTERS, struct asset_cluster, [2].cone_cutoff = 0.5f,
+            "cluster 2 of triangles: a triangle's normal lies outside the normal cone (0.8)");
+    REFUSED(ASSET_CLUSTERS, struct asset_cluster, [0].cone_axis[2] = 2, "cluster 0 of triangles: the axis of the normal cone has length 2");
     struct asset_parts parts = good;
     parts.cluster_count = 2;
     struct asset_bytes f = build(&parts);
@@ -327,7 +329,7 @@ TEST(wrong_clusters_are_refused)
     parts.clusters = more;
     parts.cluster_count = 4;
     f = build(&parts);
-    refused_sealed(&f, "the primitives contain 3 of 4 clusters");
+    refused_sealed(&f, "only 3 of 4 clusters belong to a primitive");
 }
 
 static float unit(uint32_t *seed)
@@ -393,26 +395,30 @@ TEST(wrong_materials_and_textures_are_refused)
     REFUSED(ASSET_MATERIALS, struct asset_material, ->normal_texture = 1, "material 0: refers to texture 1, but there are only 1 textures");
     REFUSED_HEADER(sections[ASSET_TEXCOORDS].bytes = 0, "material 0: the file has no coordinates for texture 0 (of 1 textures)");
     REFUSED_HEADER(sections[ASSET_SECOND_TEXCOORDS].bytes = 0, "material 0: the file has no coordinates for texture 0 (of 1 textures)");
-    REFUSED_HEADER(sections[ASSET_SECOND_TEXCOORDS].bytes -= 8, "section second texcoords: 24 bytes, expected 32");
+    REFUSED_HEADER(sections[ASSET_SECOND_TEXCOORDS].bytes -= 8, "section `second texcoords` has 24 bytes, expected 32");
     REFUSED(ASSET_MATERIALS, struct asset_material, ->second |= 1,
-            "material 0: flags of second texture coordinates 0x9 have bits outside 0x1e");
+            "material 0: unknown flags 0x9 for second texture coordinates (known: 0x1e)");
     REFUSED(ASSET_MATERIALS, struct asset_material, ->second |= 1 << 5,
-            "material 0: flags of second texture coordinates 0x28 have bits outside 0x1e");
-    REFUSED(ASSET_MATERIALS, struct asset_material, ->base_color[1] = NAN, "material 0: a factor");
-    REFUSED(ASSET_MATERIALS, struct asset_material, ->metallic = 1.5f, "material 0: a factor");
-    REFUSED(ASSET_MATERIALS, struct asset_material, ->emissive[2] = INFINITY, "material 0: a factor is infinite or not a number");
+            "material 0: unknown flags 0x28 for second texture coordinates (known: 0x1e)");
+    REFUSED(ASSET_MATERIALS, struct asset_material, ->base_color[1] = NAN,
+            "material 0: the colour, metallic, roughness or occlusion factor");
+    REFUSED(ASSET_MATERIALS, struct asset_material, ->metallic = 1.5f, "material 0: the colour, metallic, roughness or occlusion factor");
+    REFUSED(ASSET_MATERIALS, struct asset_material, ->emissive[2] = INFINITY,
+            "material 0: the normal scale, emissive colour or alpha cutoff is infinite or not a number");
     REFUSED(ASSET_MATERIALS, struct asset_material, ->alpha = 3, "material 0: alpha mode 3");
     REFUSED(ASSET_TEXTURES, struct asset_texture, ->offset = 4, "texture 0: starts at byte 4 and has 8 bytes, but the section has only 8");
-    REFUSED(ASSET_TEXTURES, struct asset_texture, ->width_px = 0, "texture 0: 0 x 1 pixels");
-    REFUSED(ASSET_TEXTURES, struct asset_texture, ->height_px = UINT32_MAX, "texture 0: 2 x 4294967295 pixels");
+    REFUSED(ASSET_TEXTURES, struct asset_texture, ->width_px = 0, "texture 0 has 0 x 1 pixels");
+    REFUSED(ASSET_TEXTURES, struct asset_texture, ->height_px = UINT32_MAX, "texture 0 has 2 x 4294967295 pixels");
     REFUSED(ASSET_TEXTURES, struct asset_texture, ->srgb = 2, "texture 0: srgb 2");
 }
 
 TEST(wrong_sensors_are_refused)
 {
-    REFUSED(ASSET_SENSORS, struct asset_sensor, [1].surface_m[0] = NAN, "sensor 1: the position is infinite or not a number");
-    REFUSED(ASSET_SENSORS, struct asset_sensor, [1].surface_distance_m = -1, "sensor 1: the position");
-    REFUSED(ASSET_SENSORS, struct asset_sensor, [1].nearest_vertex = 4, "sensor 1: the nearest vertex is 4, but there are only 4 vertices");
+    REFUSED(ASSET_SENSORS, struct asset_sensor, [1].surface_m[0] = NAN,
+            "sensor 1: its position or distance from the surface is infinite, negative or not a number");
+    REFUSED(ASSET_SENSORS, struct asset_sensor, [1].surface_distance_m = -1, "sensor 1: its position");
+    REFUSED(ASSET_SENSORS, struct asset_sensor, [1].nearest_vertex = 4,
+            "sensor 1: its nearest vertex is 4, but the file has only 4 vertices");
 }
 
 /* Distances are stored as 16-bit codes. Each code must decode to a larger distance than the previous one, and each distance
@@ -571,7 +577,7 @@ static void packed_refused(struct packed_file *packed, size_t offset, uint8_t by
 {
     struct asset_bytes f = build_packed(packed);
     ((uint8_t *)part(&f, ASSET_GEODESIC))[offset] = byte;
-    refused_sealed(&f, "section geodesic: ");
+    refused_sealed(&f, "section `geodesic` has ");
 }
 
 TEST(damaged_packed_distances_are_refused)
@@ -590,5 +596,5 @@ TEST(damaged_packed_distances_are_refused)
     packed_refused(&packed, block + 4 * 5 + 3, 16);        /* refused: the distances take more bits than their block has */
     struct asset_bytes f = build_packed(&packed);
     f.header->sections[ASSET_GEODESIC].bytes -= 16;
-    refused_sealed(&f, "section geodesic: ");
+    refused_sealed(&f, "section `geodesic` has ");
 }

@@ -253,7 +253,7 @@ CASE(a_damaged_or_cut_file_is_refused_with_a_reason)
     static const struct {
         size_t flip, cut;
         const char *reason;
-    } cases[] = { { 100, 0, "damaged: checksum" }, { 0, 1, "truncated: " }, { 0, 1000, "truncated: " } };
+    } cases[] = { { 100, 0, "damaged: its checksum" }, { 0, 1, "truncated: " }, { 0, 1000, "truncated: " } };
     for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
         struct cache_file file;
         size_t size;

@@ -536,9 +536,12 @@ TEST(test_tables)
                  "0,1,x,2.5\r\n1,2,x,2\n2,,x,2\n3,bad,x,2\n4,3,,2\n5,4,,2\n6,5,,2\n7,6,,2\n8,7,,2\n9,8,,2\n",
                  NULL);
     expect_table(folder, "time;TI-2;TI-3\n", "line 1: no column 'TI-1'");
-    expect_table(folder, "TI-1,TI-2\n1,2\n", "1 lines have a value for each of the 2 sensors, 0 lines do not; the fit needs at least 8");
-    expect_table(folder, "TI-1;TI-2\n1,5;2,5\n2,5;3\n",
-                 "0 lines have a value for each of the 2 sensors, 2 lines do not; the fit needs at least 8");
+    expect_table(
+        folder, "TI-1,TI-2\n1,2\n",
+        "only 1 lines of this `fit` file have a value for each of the 2 sensors, 0 lines do not; the fit of `gp` needs at least 8");
+    expect_table(
+        folder, "TI-1;TI-2\n1,5;2,5\n2,5;3\n",
+        "only 0 lines of this `fit` file have a value for each of the 2 sensors, 2 lines do not; the fit of `gp` needs at least 8");
     expect_table(folder, "TI-1,TI-2\n1,2\n1,5,2,5\n", "line 3: the row has a cell 3, but the header has only 2 columns");
     expect_table(folder, "", "is empty");
 }

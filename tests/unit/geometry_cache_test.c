@@ -236,7 +236,7 @@ CASE(what_is_damaged_is_made_anew)
         json_t *asset = prepare(c, tags, "kept", &model_read);
         assert_true(model_read);
         prep_case_says(&c->err, stock);
-        prep_case_says(&c->err, cut ? "truncated: " : "damaged: checksum ");
+        prep_case_says(&c->err, cut ? "truncated: " : "damaged: its checksum ");
         prep_case_says(&c->err, columns);
         assert_int_equal(number(asset, "stocked"), 0);
         assert_in_range(number(asset, "kept_sensors"), 0, cut ? 1 : 0);

@@ -168,28 +168,30 @@ CASE(rotations_have_a_length)
     assert_float_equal(l->model.nodes[0].world[0], 0, 1e-12);
     assert_float_equal(l->model.nodes[0].world[1], 1, 1e-12);
     assert_float_equal(l->model.nodes[0].world[10], 1, 1e-12);
-    refused(l, TURNED("[0,0,0,0]"), "node 0 'valve': the node's rotation in the glTF file is a quaternion of length 0, not 1");
+    refused(l, TURNED("[0,0,0,0]"),
+            "node 0 'valve': the node's rotation in the glTF file is invalid: its quaternion has length 0, expected 1");
     refused(l, TURNED("[0,0,1e-9,0]"), "node 0 'valve': the node's rotation");
 }
 
 CASE(wrong_numbers_are_refused)
 {
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0},\"indices\":7}") ACCESSORS "}",
-            "mesh 0 'm', primitive 0: indices: index 5 refers to vertex 4, but there are only 4 vertices");
+            "mesh 0 'm', primitive 0: index number 5 refers to vertex 4, but there are only 4 vertices");
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":6},\"indices\":1}") ACCESSORS "}",
             "POSITION: element 1 is infinite or not a number");
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":12},\"indices\":1}") ACCESSORS "}",
             "4 elements do not fit into bufferView 0");
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":13},\"indices\":1}") ACCESSORS "}", "elements do not fit into the");
-    refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":14},\"indices\":1}") ACCESSORS "}", "there is no bufferView 7");
+    refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":14},\"indices\":1}") ACCESSORS "}",
+            "refers to bufferView 7, which does not exist");
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":99},\"indices\":1}") ACCESSORS "}", "there is no accessor 99");
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":1},\"indices\":1}") ACCESSORS "}", "1 components, expected 3");
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0,\"NORMAL\":15},\"indices\":1}") ACCESSORS "}",
-            "NORMAL: 3 elements, positions have 4");
+            "attribute NORMAL has 3 elements, but POSITION has 4");
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0},\"indices\":0}") ACCESSORS "}", "is not allowed for indices");
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0},\"indices\":16,\"mode\":5}") ACCESSORS "}",
-            "indices: must not be normalized");
-    refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"NORMAL\":0},\"indices\":1}") ACCESSORS "}", "has no POSITION");
+            "the accessor of `indices` has `normalized: true`");
+    refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"NORMAL\":0},\"indices\":1}") ACCESSORS "}", "has no attribute POSITION");
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0},\"indices\":2}") ACCESSORS "}",
             "the number of indices, 4, is not a multiple of 3");
     refused(l, HEAD PLAIN_NODES MESH("{\"attributes\":{\"POSITION\":0},\"indices\":1,\"mode\":7}") ACCESSORS "}", "mode 7");
@@ -240,12 +242,12 @@ CASE(broken_files_are_refused)
         if (l->good || !l->why[0])
             fail_msg("the first %zu bytes of %zu: %s", cut, size, l->good ? "accepted" : "refused without a reason");
     }
-    refused(l, "{\"asset\":{\"version\":\"2.0\"},,}", "JSON: line 1");
-    refused(l, "[1]", "the top-level value is not an object");
+    refused(l, "{\"asset\":{\"version\":\"2.0\"},,}", "the JSON part of the glTF model is invalid: line 1");
+    refused(l, "[1]", "its JSON part is not an object");
     refused(l,
             "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":308}],\"bufferViews\":[{\"buffer\":0,\"byteOffset\":300,"
             "\"byteLength\":9}]}",
-            "bufferView 0: bytes 300+9 lie outside the buffer of 308 bytes");
+            "bufferView 0: its bytes, from 300 on, 9 bytes, lie outside its buffer of 308 bytes");
     refused(l, "{\"asset\":{\"version\":\"2.0\"},\"bufferViews\":[{\"buffer\":-1,\"byteLength\":9}]}", "there is no buffer -1");
     struct text *deep = test_text();
     text_add(deep, "{\"extras\":");
@@ -396,9 +398,10 @@ CASE(what_cannot_be_cut_is_refused)
     static const struct {
         const char *json, *reason;
     } cases[] = {
-        { HEAD "\"scenes\":[{\"nodes\":[]}],\"nodes\":[{\"mesh\":0}]," MESH(SQUARE) ACCESSORS "}", "the model's scene has no nodes" },
+        { HEAD "\"scenes\":[{\"nodes\":[]}],\"nodes\":[{\"mesh\":0}]," MESH(SQUARE) ACCESSORS "}",
+          "the glTF model's scene has no nodes, so there is nothing to show" },
         { HEAD "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0,\"scale\":[1,0,1]}]," MESH(SQUARE) ACCESSORS "}",
-          "none of the asset's 2 triangles has an area" },
+          "none of the asset's 2 triangles has an area, so there is nothing to show" },
         { HEAD "\"scenes\":[{\"nodes\":[0,1]}],\"nodes\":[{\"mesh\":0},{\"mesh\":0,\"translation\":[0,2e7,0]}]," MESH(SQUARE) ACCESSORS "}",
           "the asset extends 2e+07 m along axis 1, more than the maximum of 1e+07 m: check the model's unit" },
     };
@@ -417,8 +420,9 @@ CASE(wrong_instances_and_sparse_elements_are_refused)
         const char *attributes, *reason;
     } instances[] = {
         { "\"_OWN\":11", "node 0 'i': EXT_mesh_gpu_instancing: the instances have neither TRANSLATION, ROTATION nor SCALE" },
-        { "\"TRANSLATION\":11,\"SCALE\":15", "node 0 'i': EXT_mesh_gpu_instancing: 2 and 3 instances" },
-        { "\"TRANSLATION\":10", "node 0 'i': EXT_mesh_gpu_instancing: TRANSLATION: 2 components, expected 3" },
+        { "\"TRANSLATION\":11,\"SCALE\":15",
+          "node 0 'i': EXT_mesh_gpu_instancing: the attributes have different numbers of instances, 2 and 3" },
+        { "\"TRANSLATION\":10", "node 0 'i': EXT_mesh_gpu_instancing: TRANSLATION has 2 components, expected 3" },
         { "\"TRANSLATION\":6", "TRANSLATION: element 1 is infinite or not a number" },
     };
     for (size_t i = 0; i < sizeof(instances) / sizeof(instances[0]); i++) {
@@ -431,9 +435,9 @@ CASE(wrong_instances_and_sparse_elements_are_refused)
         int count, type, at;
         const char *reason;
     } sparse[] = {
-        { 5, 5123, 112, "POSITION: invalid sparse accessor: 5 of 4 elements, indices of component type 5123" },
-        { 1, 5122, 112, "POSITION: invalid sparse accessor: 1 of 4 elements, indices of component type 5122" },
-        { 1, 5123, 186, "POSITION: invalid sparse accessor: element 4 of 4 is out of range or out of order" },
+        { 5, 5123, 112, "POSITION: sparse accessor with 5 of 4 elements and indices of component type 5123" },
+        { 1, 5122, 112, "POSITION: sparse accessor with 1 of 4 elements and indices of component type 5122" },
+        { 1, 5123, 186, "POSITION: sparse accessor: the index of element 4 of 4 is out of range or out of order" },
         { 1, 5123, 307, "do not fit into bufferView 0" },
     };
     for (size_t i = 0; i < sizeof(sparse) / sizeof(sparse[0]); i++) {

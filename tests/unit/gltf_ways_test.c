@@ -306,13 +306,13 @@ CASE(false_claims_of_compressed_views_are_refused)
     } cases[] = {
         { "count", json_integer(4000000000), "cannot hold 4000000000 elements" },
         { "count", json_integer(-1), "bufferView 0: extensions.EXT_meshopt_compression.count is not a whole number" },
-        { "count", json_integer(34), "bytes when decoded, but byteLength is" },
+        { "count", json_integer(34), "bytes, but byteLength is" },
         { "byteStride", json_integer(6), "cannot be of mode ATTRIBUTES" },
-        { "byteLength", json_integer(9999999), "bufferView 0: bytes 0+9999999 lie outside the buffer of" },
+        { "byteLength", json_integer(9999999), "bufferView 0: its bytes, from 0 on, 9999999 bytes, lie outside its buffer of" },
         { "byteLength", json_integer(40), "are damaged" },
-        { "mode", json_string("LINES"), "mode or filter is unknown" },
+        { "mode", json_string("LINES"), "an unknown mode or filter" },
         { "filter", json_string("QUATERNION"), "filter QUATERNION is not allowed for elements of 12 bytes" },
-        { "buffer", json_integer(1), "buffer 1 has no data" },
+        { "buffer", json_integer(1), "refers to buffer 1, which has no data" },
         { "buffer", json_integer(7), "there is no buffer 7" },
         { "mode", json_null(), "has no extensions.EXT_meshopt_compression.mode" },
     };
@@ -323,7 +323,7 @@ CASE(false_claims_of_compressed_views_are_refused)
     }
     struct model_maker maker = seed_open(8, "meshopt.glb", &sheet);
     json_object_del(maker_get(&maker, "bufferViews", 0), "extensions");
-    assert_model_refused(l, &maker, "bufferView 0: buffer 1 has no data");
+    assert_model_refused(l, &maker, "bufferView 0 refers to buffer 1, which has no data");
 }
 
 static json_t *primitive_of(struct model_maker *maker)
@@ -336,33 +336,35 @@ CASE(false_claims_of_draco_are_refused)
     struct wavy_sheet sheet = sheet_create(6, 4);
     struct model_maker maker = seed_open(11, "draco_edgebreaker.glb", &sheet);
     memcpy(maker.bin.at + 13, "\xff\xff\xff\xff\x0f", 5); /* 4294967295 triangles */
-    assert_model_refused(l, &maker, "mesh 0 'm', primitive 0: KHR_draco_mesh_compression: ");
+    assert_model_refused(l, &maker, "mesh 0 'm', primitive 0 cannot be decompressed (KHR_draco_mesh_compression): ");
     assert_non_null(strstr(l->why, "cannot hold"));
     maker = seed_open(11, "draco_edgebreaker.glb", &sheet);
     json_object_set_new(primitive_of(&maker), "mode", json_integer(5));
-    assert_model_refused(l, &maker, "Draco data with primitive mode 5");
+    assert_model_refused(l, &maker, "has Draco-compressed data of primitive mode 5");
     maker = seed_open(11, "draco_edgebreaker.glb", &sheet);
     json_object_set_new(json_object_get(json_object_get(json_object_get(primitive_of(&maker), "extensions"), "KHR_draco_mesh_compression"),
                                         "attributes"),
                         "NORMAL", json_integer(9));
-    assert_model_refused(l, &maker, "the Draco data does not have NORMAL as attribute 9");
+    assert_model_refused(l, &maker, "the Draco-compressed data lacks NORMAL as attribute 9");
     maker = seed_open(12, "draco_sequential.glb", &sheet);
     json_object_set_new(maker_get(&maker, "bufferViews", 0), "byteLength", json_integer(100));
-    assert_model_refused(l, &maker, "KHR_draco_mesh_compression: ");
+    assert_model_refused(l, &maker, "(KHR_draco_mesh_compression): ");
     maker = seed_open(12, "draco_sequential.glb", &sheet);
     json_object_set_new(maker_get(&maker, "bufferViews", 0), "byteLength", json_integer(12));
-    assert_model_refused(l, &maker, "mesh 0 'm', primitive 0: KHR_draco_mesh_compression: truncated at 12 bytes");
+    assert_model_refused(
+        l, &maker,
+        "mesh 0 'm', primitive 0 cannot be decompressed (KHR_draco_mesh_compression): the Draco-compressed mesh is truncated at 12 bytes");
     maker = seed_open(11, "draco_edgebreaker.glb", &sheet);
     maker.bin.at[0] = 'X';
-    assert_model_refused(l, &maker, "bytes without Draco's signature");
+    assert_model_refused(l, &maker, "bytes of compressed data do not begin with DRACO");
     maker = seed_open(11, "draco_edgebreaker.glb", &sheet);
     maker.bin.at[5] = 1;
-    assert_model_refused(l, &maker, "version 1.2, type 1, method 1: only meshes of version 2.2 are supported");
+    assert_model_refused(l, &maker, "supports only Draco meshes of version 2.2; this one has version 1.2, type 1, method 1");
     maker = seed_open(11, "draco_edgebreaker.glb", &sheet);
     json_object_set_new(json_object_get(json_object_get(json_object_get(primitive_of(&maker), "extensions"), "KHR_draco_mesh_compression"),
                                         "attributes"),
                         "TANGENT", json_integer(0));
-    assert_model_refused(l, &maker, "mesh 0 'm', primitive 0: the Draco data has the attribute TANGENT, which the primitive lacks");
+    assert_model_refused(l, &maker, "mesh 0 'm', primitive 0 lacks the attribute TANGENT, which its Draco-compressed data has");
 }
 
 /* --- models that the seeds do not cover ---------------------------------------------------------------------------------- */
@@ -389,7 +391,7 @@ CASE(what_a_small_file_claims_is_bounded)
     maker_init(&maker);
     int at = maker_accessor(&maker, -1, FLOAT, 4000000000u, "VEC3");
     maker_node(&maker, "n", maker_mesh(&maker, json_pack("{s:{s:i}}", "attributes", "POSITION", at)), NULL);
-    assert_model_refused(l, &maker, "accessor 0: 4000000000 elements without data in the file are too many");
+    assert_model_refused(l, &maker, "accessor 0 has 4000000000 elements without data, more than Plantcast supports");
 
     maker_init(&maker); /* a small file that states a thousand primitives with the same million indices */
     at = maker_accessor(&maker, -1, FLOAT, 3, "VEC3");
@@ -399,13 +401,13 @@ CASE(what_a_small_file_claims_is_bounded)
         json_array_append_new(json_object_get(maker_get(&maker, "meshes", mesh), "primitives"),
                               json_pack("{s:{s:i},s:i}", "attributes", "POSITION", at, "indices", list));
     maker_node(&maker, "n", mesh, NULL);
-    assert_model_refused(l, &maker, "elements are too many for a file of");
+    assert_model_refused(l, &maker, "elements cannot be in a file of");
 
     maker_init(&maker); /* a small file that states millions of instances of a tiny mesh */
     mesh = maker_mesh(&maker, json_pack("{s:{s:i}}", "attributes", "POSITION", maker_accessor(&maker, -1, FLOAT, 3, "VEC3")));
     at = maker_accessor(&maker, -1, BYTE, 5000000, "VEC3");
     maker_node(&maker, "n", mesh, json_pack("{s:{s:{s:{s:i}}}}", "extensions", "EXT_mesh_gpu_instancing", "attributes", "TRANSLATION", at));
-    assert_model_refused(l, &maker, "node 0 'n': EXT_mesh_gpu_instancing: 80000000 elements are too many for");
+    assert_model_refused(l, &maker, "node 0 'n': EXT_mesh_gpu_instancing: 80000000 elements cannot be in a file of");
 }
 
 CASE(wrong_types_and_references_are_refused_by_name)
@@ -422,35 +424,37 @@ CASE(wrong_types_and_references_are_refused_by_name)
         { "nodes", "children", "5", "node 0 'sheet': children is not a list" },
         { "nodes", "children", "[0]", "a cycle" },
         { "nodes", "matrix", "[1,0,0]", "node 0 'sheet': matrix is not 16 numbers" },
-        { "nodes", "matrix", "[1,0,0,0,0,1,0,0,0,0,1,1,0,0,0,1]", "the last row of the node's glTF matrix is not 0 0 0 1" },
-        { "nodes", "translation", "[1e300,0,0]", "the node's position is infinite, not a number, or beyond" },
+        { "nodes", "matrix", "[1,0,0,0,0,1,0,0,0,0,1,1,0,0,0,1]",
+          "the node's matrix in the glTF file is invalid: its last row is not 0 0 0 1" },
+        { "nodes", "translation", "[1e300,0,0]", "the node's transformation in the glTF file has numbers that are infinite, invalid" },
         { "nodes", "skin", "0", "there is no skin 0" },
         { "nodes", "name", "5", "name is not text" },
-        { "nodes", "weights", "[0.5]", "morph targets are not supported" },
-        { "meshes", "weights", "[0,1]", "mesh 0 'm': morph targets are not supported" },
+        { "nodes", "weights", "[0.5]", "Plantcast does not support morph targets" },
+        { "meshes", "weights", "[0,1]", "mesh 0 'm': Plantcast does not support morph targets" },
         { "meshes", "primitives", "{}", "mesh 0 'm': primitives is not a list" },
         { "meshes", "primitives", "[{}]", "mesh 0 'm', primitive 0: has no attributes" },
         { "meshes", "primitives", "[3]", "mesh 0 'm', primitive 0: is not an object" },
         { "accessors", "count", "-3", "accessor 0: count is not a whole number" },
         { "accessors", "count", "100", "POSITION: 100 elements do not fit into bufferView 0 of 108 bytes" },
-        { "accessors", "componentType", "5124", "component type 5124 does not exist in glTF 2.0" },
-        { "accessors", "type", "\"VEC2\"", "POSITION: 2 components, expected 3" },
+        { "accessors", "componentType", "5124", "has component type 5124, which does not exist in glTF 2.0" },
+        { "accessors", "type", "\"VEC2\"", "POSITION has 2 components, expected 3" },
         { "accessors", "byteOffset", "\"x\"", "accessor 0: byteOffset is not a whole number" },
         { "accessors", "sparse", "{}", "accessor 0: has no sparse.count" },
         { "accessors", "sparse",
           "{\"count\":2,\"indices\":{\"bufferView\":1,\"componentType\":5121,\"byteOffset\":4},\"values\":{\"bufferView\":0}}",
           "or out of order" },
         { "bufferViews", "byteOffset", "-4", "bufferView 0: byteOffset is not a whole number" },
-        { "bufferViews", "byteLength", "99999", "bufferView 0: bytes 0+99999 lie outside the buffer of" },
+        { "bufferViews", "byteLength", "99999", "bufferView 0: its bytes, from 0 on, 99999 bytes, lie outside its buffer of" },
         { "bufferViews", "byteStride", "4", "byteStride 4 of bufferView 0 is less than an element's 12 bytes" },
         { "bufferViews", "buffer", "1", "bufferView 0: buffer: there is no buffer 1" },
-        { "buffers", "byteLength", "100000", "buffer 0 is truncated:" },
-        { "buffers", "uri", "\"data:text/plain,hello\"", "buffer 0: data URI: 'data:text/plain,hello' is not encoded as base64" },
-        { "buffers", "uri", "\"data:;base64,AAAA$\"", "buffer 0: data URI:" },
+        { "buffers", "byteLength", "100000", "buffer 0 has 204 bytes instead of" },
+        { "buffers", "uri", "\"data:text/plain,hello\"",
+          "buffer 0: invalid glTF file: the data URI 'data:text/plain,hello' is not encoded as base64" },
+        { "buffers", "uri", "\"data:;base64,AAAA$\"", "buffer 0: invalid glTF file: the base64 data in a data URI" },
         { "buffers", "uri", "\"model%00.bin\"", "the name contains a 0 byte" },
-        { "buffers", "uri", "\"/etc/passwd\"", "the name is an absolute path" },
+        { "buffers", "uri", "\"/etc/passwd\"", "absolute paths are not allowed" },
         { "buffers", "uri", "\"../x.bin\"", "is not a readable file inside the model's folder" },
-        { "buffers", "uri", "\"https://localhost/x.bin\"", "the name is a URL" },
+        { "buffers", "uri", "\"https://localhost/x.bin\"", "URLs are not supported" },
     };
     for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
         struct model_maker maker;
@@ -484,17 +488,16 @@ CASE(heads_are_checked)
         { "{}", "glTF version '', expected 2.0" },
         { "{\"asset\":{\"version\":\"1.0\"}}", "glTF version '1.0'" },
         { "{\"asset\":{\"version\":\"2.0\",\"minVersion\":\"2.1\"}}", "glTF version '2.1'" },
-        { "{\"asset\":{\"version\":\"2.0\"},\"extensionsRequired\":[\"CESIUM_RTC\"]}",
-          "CESIUM_RTC, which Plantcast does not support" },
+        { "{\"asset\":{\"version\":\"2.0\"},\"extensionsRequired\":[\"CESIUM_RTC\"]}", "CESIUM_RTC, which Plantcast does not support" },
         { "{\"asset\":{\"version\":\"2.0\"},\"extensionsRequired\":[5]}", "requires the glTF extension" },
         { "{\"asset\":{\"version\":\"2.0\"},\"nodes\":{}}", "nodes is not a list" },
         { "{\"asset\":{\"version\":\"2.0\"},\"nodes\":[5]}", "node 0: is not an object" },
         { "{\"asset\":{\"version\":\"2.0\"},\"scene\":3}", "scene: there is no scene 3" },
         { "{\"asset\":{\"version\":\"2.0\"},\"images\":[{}]}", "image 0 has neither a uri nor a bufferView" },
-        { "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":3}]}", "the bytes of buffer 0 are missing" },
+        { "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":3}]}", "buffer 0 has no uri, and the file has no binary chunk" },
         { "\xEF\xBB\xBF{\"asset\":{\"version\":\"2.0\"},\"scene\":3}", "scene: there is no scene 3" },
-        { "{\"asset\":{\"version\":\"2.0\"}", "JSON: line 1" },
-        { "", "JSON: line 1" },
+        { "{\"asset\":{\"version\":\"2.0\"}", "the JSON part of the glTF model is invalid: line 1" },
+        { "", "the JSON part of the glTF model is invalid: line 1" },
     };
     for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
         try_bytes(l, mem_strdup(cases[i].json), strlen(cases[i].json));
@@ -543,8 +546,9 @@ static void second_texcoords_are_read(struct gltf_case *l, const struct wavy_she
     assert_true(m->base_color_texture != ASSET_NO_TEXTURE && m->normal_texture == m->occlusion_texture);
     assert_true(m->occlusion_texture != ASSET_NO_TEXTURE && m->emissive_texture == ASSET_NO_TEXTURE);
     assert_int_equal(l->model.left_out_textures, 1);
-    assert_string_equal(l->model.left_out[0],
-                        "material 0 'paint': the emissive texture (TEXCOORD_0) needs a third texture mapping, but only two are supported");
+    assert_string_equal(
+        l->model.left_out[0],
+        "material 0 'paint': the emissive texture (TEXCOORD_0) is not shown: Plantcast supports only two texture mappings for a material");
     const struct geometry *g = gltf_case_cut(l, NULL, 1, AXIS_Y);
     assert_true(g->second_texcoords && g->materials[0].second == m->second);
 
@@ -590,16 +594,16 @@ CASE(textures_lie_where_their_transform_puts_them)
     maker = seed_open(15, "textured.glb", &sheet);
     json_object_set_new(maker_get(&maker, "samplers", 0), "wrapS", json_integer(33648));
     assert_model_good(l, &maker);
-    assert_string_equal(l->model.left_out[0],
-                        "material 0 'paint': the base colour texture: mirroring, or different wrapping along u and v, is not "
-                        "supported outside 0..1");
+    assert_string_equal(l->model.left_out[0], "material 0 'paint': the base colour texture is not shown: Plantcast does not support "
+                                              "mirroring, or different wrapping along u and v, outside 0..1");
     assert_int_equal(l->model.materials[0].base_color_texture, ASSET_NO_TEXTURE);
 
     maker = seed_open(15, "textured.glb", &sheet);
     json_object_del(maker_get(&maker, "textures", 0), "source");
     assert_model_good(l, &maker);
-    assert_string_equal(l->model.left_out[0],
-                        "material 0 'paint': the base colour texture: the texture's image is not PNG, JPEG or WebP");
+    assert_string_equal(
+        l->model.left_out[0],
+        "material 0 'paint': the base colour texture: the texture's image is not PNG, JPEG or WebP, so the texture is not shown");
 
     static const char *const looks[] = { "KHR_texture_basisu", "KHR_materials_pbrSpecularGlossiness", "EXT_mesh_features",
                                          "EXT_structural_metadata", "EXT_texture_avif" };
@@ -620,7 +624,9 @@ CASE(textures_lie_where_their_transform_puts_them)
     json_object_del(lost, "bufferView");
     json_object_set_new(lost, "uri", json_string("none.png"));
     assert_model_good(l, &maker);
-    assert_non_null(strstr(l->model.left_out[0], "base colour texture: the texture's image is missing: 'none.png' is not a readable file"));
+    assert_non_null(
+        strstr(l->model.left_out[0],
+               "base colour texture: the texture's image is missing, so the texture is not shown: 'none.png' is not a readable file"));
 
     maker = seed_open(15, "textured.glb", &sheet);
     json_object_set_new(maker_get(&maker, "materials", 0), "alphaMode", json_string("GLOW"));
@@ -718,7 +724,8 @@ CASE(what_many_nodes_draw_is_bounded)
         maker_node(&maker, i == 7 ? "one" : "n", mesh, NULL);
     assert_model_good(l, &maker);
     assert_false(geometry_cut(&(struct geometry){ 0 }, &l->model, &(struct geometry_params){ .unit_m = 1 }, why));
-    assert_string_equal(why, "the asset has 50001000 triangles, more than the limit of 50000000");
+    assert_string_equal(why,
+                        "the asset has 50001000 triangles; at most 50000000 are possible: split the asset, or export the model coarser");
     const struct geometry *g = gltf_case_cut(l, "one", 1, AXIS_Z);
     assert_int_equal(g->index_count, 3000);
 }
@@ -751,7 +758,7 @@ CASE(lines_are_counted_for_the_asset_that_has_them)
     assert_int_equal(g->skipped_points, 1);
     assert_int_equal(l->model.skipped_lines, 2);
     assert_false(geometry_cut(&(struct geometry){ 0 }, &l->model, &(struct geometry_params){ .nodes = "wire", .unit_m = 1 }, why));
-    assert_string_equal(why, "'wire' has no triangles (1 line primitives, 0 point primitives)");
+    assert_string_equal(why, "'wire' has no triangles to show, only 1 line primitives and 0 point primitives");
 }
 
 /* --- real models --------------------------------------------------------------------------------------------------------- */

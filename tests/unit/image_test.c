@@ -211,7 +211,7 @@ TEST(false_claims_are_refused)
     crc = ~crc;
     for (int i = 0; i < 4; i++)
         png.bytes[29 + i] = (unsigned char)(crc >> (24 - 8 * i));
-    assert_refused(png.bytes, png.size, "bytes cannot hold a picture of 8191 x 8191 pixels");
+    assert_refused(png.bytes, png.size, "bytes cannot hold 8191 x 8191 pixels");
     free(png.bytes);
     assert_refused("GIF89a", 6, "the picture of 6 bytes is not in the format PNG, JPEG or WebP");
     assert_refused("", 0, "the picture of 0 bytes is not");

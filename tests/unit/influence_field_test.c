@@ -784,7 +784,7 @@ CASE(test_damaged_file)
         assert_null(use(c));
         prep_case_expect(c, "$PLANT", 0);
         prep_case_says(&c->err, path);
-        prep_case_says(&c->err, way ? "truncated: 100 bytes, the header says" : "damaged: checksum");
+        prep_case_says(&c->err, way ? "truncated: the file has 100 bytes, but its header says" : "damaged: its checksum");
         use_prepared(c);
     }
     write_plant(c, "", "", 2); /* after the interpolation was removed from the plant file, preparing deletes its file */

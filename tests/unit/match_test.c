@@ -91,7 +91,7 @@ CASE(test_by_number)
     expect(f, "20-LT-3302", "", MATCH_SURE, "20-V-330", "loop 3302: equipment number 330");
     expect(f, "40-LT-330", "", MATCH_LIKELY, "20-V-330", "the tag's area prefix differs from the equipment's");
     expect(f, "PT-205B", "", MATCH_SURE, "P-205B", "");
-    expect(f, "PT-205C", "", MATCH_NONE, NULL, "nothing in the model");
+    expect(f, "PT-205C", "", MATCH_NONE, NULL, "no node of the model");
     expect(f, "PT-205", "", MATCH_NONE, NULL, "P-205A or P-205B");
     expect(f, "TT-101", "", MATCH_NONE, NULL, "E-101 or P-101");
     expect(f, "TT-101", "pump bearing temperature", MATCH_SURE, "P-101", "");
@@ -109,10 +109,10 @@ CASE(test_by_text)
     expect(f, "XT_9", "from P-101 to E-101", MATCH_NONE, NULL, "P-101 or E-101");
     expect(f, "XT_9", "Level of storage tank", MATCH_SURE, "StorageTank", "2 words");
     expect(f, "XT_9", "preheater of feed, shell", MATCH_SURE, "E-101", "2 words");
-    expect(f, "PLC1.Heartbeat", "", MATCH_NONE, NULL, "nothing in the model has the name, number or words of the tag");
+    expect(f, "PLC1.Heartbeat", "", MATCH_NONE, NULL, "no match: no node of the model has the name, number or words of the tag");
     path = temp_write_text(f->folder, "aliases.csv", "Alias;Equipment\nThe big one;V-330\n");
     assert_false(matcher_read_aliases(&f->matcher, path, why));
-    assert_string_equal(why, "line 2: no asset is called 'V-330'");
+    assert_string_equal(why, "line 2: column Equipment: no asset of the plant is called 'V-330'");
     path = temp_write_text(f->folder, "aliases.csv", "Alias;Equipment\nThe big one;20-V-330\n");
     assert_true(matcher_read_aliases(&f->matcher, path, why));
     expect(f, "XT_9", "top of the big one", MATCH_SURE, "20-V-330", "alias 'The big one'");

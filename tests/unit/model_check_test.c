@@ -133,12 +133,15 @@ CASE(transforms_that_cannot_be_prepared_are_refused)
     static const struct {
         const char *transform, *why;
     } transforms[] = {
-        { "\"translation\":[1e16,0,0]", "is not valid: node 1: the node's position is infinite, not a number, or beyond 1e15" },
+        { "\"translation\":[1e16,0,0]",
+          "is not valid: node 1: the node's transformation in the glTF file has numbers that are infinite, invalid or above 1e15" },
         { "\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0,0,-1e300,0,1]",
-          "is not valid: node 1: the node's position is infinite, not a number, or beyond 1e15" },
-        { "\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,0]", "is not valid: node 1: the last row of the node's glTF matrix is not 0 0 0 1" },
+          "is not valid: node 1: the node's transformation in the glTF file has numbers that are infinite, invalid or above 1e15" },
+        { "\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,0]",
+          "is not valid: node 1: the node's matrix in the glTF file is invalid: its last row is not 0 0 0 1" },
         { "\"matrix\":[1,0,0,0]", "is not valid: node 1: matrix is not 16 numbers" },
-        { "\"rotation\":[0,0,0,0]", "is not valid: node 1: the node's rotation in the glTF file is a quaternion of length 0, not 1" },
+        { "\"rotation\":[0,0,0,0]",
+          "is not valid: node 1: the node's rotation in the glTF file is invalid: its quaternion has length 0, expected 1" },
         { "\"rotation\":[0,0,1]", "is not valid: node 1: rotation is not 4 numbers" },
         { "\"scale\":[1,1,\"1\"]", "is not valid: node 1: scale is not 3 numbers" },
         { "\"translation\":5", "is not valid: node 1: translation is not 3 numbers" },
@@ -146,7 +149,7 @@ CASE(transforms_that_cannot_be_prepared_are_refused)
         { "\"mesh\":\"0\"", "is not valid: node 1: mesh is not a whole number" },
         { "\"children\":[2]", "is not valid: node 1: children: there is no node 2" },
         { "\"skin\":0", "is not valid: node 1: skin: there is no skin 0" },
-        { "\"weights\":[0,0.5]", "is not valid: node 1: morph targets are not supported" },
+        { "\"weights\":[0,0.5]", "is not valid: node 1: Plantcast does not support morph targets: export the model without them" },
         { "\"rotation\":[0,0,2,0],\"scale\":null", NULL }, /* plantcast-prep normalises the rotation */
     };
     for (size_t i = 0; i < sizeof(transforms) / sizeof(*transforms); i++) {

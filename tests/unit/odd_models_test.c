@@ -182,8 +182,8 @@ CASE(why_there_are_no_distances_is_said)
     prep_case_expect(c, "$PLANT", 1);
     prep_case_says(&c->err, "plant.yaml:3: error: asset A: ");
     prep_case_says(&c->err,
-                   "model.glb: the asset's distances to 1 sensors cannot be computed: none of 20 triangles has an area after "
-                   "merging points within 1e-06 m of each other");
+                   "model.glb: the asset's distances to 1 sensors cannot be computed: none of the asset's 20 triangles has an area "
+                   "after points within 1e-06 m of each other are merged");
 }
 
 /* --- many times over -------------------------------------------------------------------------------------------------------- */

@@ -166,7 +166,7 @@ CASE(damaged_files_are_made_anew_and_said)
     bytes[size / 2] ^= 1;
     assert_int_equal(atomic_file_put(c, bytes, size), 0);
     prep_case_expect(s, "$PLANT", 0);
-    prep_case_says(&s->err, "truncated: 1000 bytes");
+    prep_case_says(&s->err, "truncated: the file has 1000 bytes");
     prep_case_says(&s->err, "checksum");
     assert_states(s, "unchanged", "shared", "unchanged");
 }
@@ -326,7 +326,7 @@ CASE(textures_are_read)
     temp_write(c->folder, "sky1.hdr", hdr, sizeof(hdr) - 1);
     prep_case_plant(c, lit);
     prep_case_expect(c, "$PLANT", 1);
-    prep_case_says(&c->err, "sky1.hdr': neither PNG nor JPEG: plantcast-images.so is missing: install the package plantcast-images (");
+    prep_case_says(&c->err, "sky1.hdr': not a PNG or JPEG file: plantcast-images.so is missing: install the package plantcast-images (");
     assert_int_equal(system(module), 0);
     prep_case_expect(c, "$PLANT", 0);
     setenv("PLANTCAST_BIN", bin, 1);
@@ -431,7 +431,7 @@ CASE(what_is_wrong_is_said_with_its_place)
     prep_case_says(&s->err, "plant.yaml:6: error: asset D:");
     prep_case_says(&s->err, "no node's name matches 'tank*'");
     prep_case_says(&s->err, "plant.yaml:7: error: asset E:");
-    prep_case_says(&s->err, "truncated GLB: 4 bytes");
+    prep_case_says(&s->err, "the GLB file is truncated: it has only 4 bytes");
     struct text manifest = { 0 }; /* the manifest lists the valid assets with their files, and states for the others why they are missing */
     prep_case_read(s, "plant.prepared/manifest.json", &manifest);
     json_t *root = prep_case_json(&manifest);

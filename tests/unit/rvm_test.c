@@ -334,12 +334,11 @@ TEST(test_what_is_not_shown_is_named)
     assert_string_equal(counts.unknown_chunk, "WHAT at byte 512");
     assert_int_equal(counts.empty, 3);
     assert_int_equal(model->nodes[0].triangle_count, 0);
-    assert_string_equal(said->at,
-                        "lost\tbyte 408\t/G\tgroup\t\t3 of the 3 primitives of the group are left out: primitive at byte 408: "
-                        "unknown kind of primitive\n"
-                        "error\t1\tRVM: /H: 1 of the 2 primitives of the group is left out: cylinder at byte 992: "
-                        "its dimensions in the RVM file are zero, negative or contradictory\n"
-                        "left out: 1 obstruction volume of /G\nleft out: 1 insulation volume of /G\n");
+    assert_string_equal(said->at, "lost\tbyte 408\t/G\tgroup\t\t3 of the 3 primitives of the group are left out: primitive at byte 408: "
+                                  "Plantcast does not know this kind of RVM primitive\n"
+                                  "error\t1\tRVM: /H: 1 of the 2 primitives of the group is left out: cylinder at byte 992: "
+                                  "the primitive's dimensions in the RVM file are zero, negative or contradictory\n"
+                                  "left out: 1 obstruction volume of /G\nleft out: 1 insulation volume of /G\n");
     cad_model_destroy(&model);
 }
 

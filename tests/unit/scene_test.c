@@ -221,9 +221,9 @@ CASE(broken_files_are_refused)
 {
     char *path = temp_path(f->prepared, "1.asset");
     assert_int_equal(truncate(path, 1000), 0);
-    assert_refused(f, "1.asset: truncated");
+    assert_refused(f, "1.asset: damaged asset file from plantcast-prep: truncated");
     assert_int_equal(truncate(path, 0), 0);
-    assert_refused(f, "1.asset: cannot be read");
+    assert_refused(f, "1.asset: this prepared asset file cannot be read");
     temp_write_text(f->prepared, "1.asset", "glTF and so on");
     assert_refused(f, "1.asset: not an asset file");
     unlink(path);
@@ -236,8 +236,8 @@ CASE(broken_manifests_are_refused)
         { "{\"format\": 2, \"assets\": [{\"id\": \"A\", \"file\": \"1.asset\", \"recipe\": \"1\"}]}", "asset B is not in" },
         { "{\"format\": 1, \"assets\": []}", "not in format 2, which this program requires" },
         { "{\"format\": 2}", "expected a list of assets" },
-        { "{\"format\": 2, \"assets\": [{\"id\": \"A\", \"file\": \"../1.asset\"}]}", "expected the members id, file and recipe" },
-        { "{\"format\": 2, \"assets\": [{\"file\": \"1.asset\"}]}", "expected the members id, file and recipe" },
+        { "{\"format\": 2, \"assets\": [{\"id\": \"A\", \"file\": \"../1.asset\"}]}", "asset number 0 has no id, file or recipe" },
+        { "{\"format\": 2, \"assets\": [{\"file\": \"1.asset\"}]}", "asset number 0 has no id, file or recipe" },
         { "{\"format\": 2,\n \"assets\": [}", "manifest.json:2:" },
         { "[]", "not in format 2, which this program requires" },
     };
@@ -258,7 +258,7 @@ CASE(what_was_not_prepared_is_refused)
     assert_refused(f, "asset B: ");
     asset->up = asset->up == AXIS_Y ? AXIS_Z : AXIS_Y;
     asset->unit_m = 0.001;
-    assert_refused(f, "'units', 'scale' or 'up', has changed since the plant was prepared");
+    assert_refused(f, "'units', 'scale' or 'up', has changed since plantcast-prep ran");
     asset->unit_m = 1;
     asset->nodes = mem_strdup("E-*");
     assert_refused(f, "asset B: ");
@@ -299,7 +299,7 @@ CASE(a_missing_asset_does_not_keep_the_others_away)
     write_manifest(f, "{\"format\": 2, \"assets\": [{\"id\": \"A\", \"file\": \"0\", \"recipe\": \"0\", \"missing\": \"a\"},"
                       "{\"id\": \"B\", \"file\": \"0\", \"recipe\": \"0\", \"missing\": \"b\"},"
                       "{\"id\": \"C\", \"file\": \"0\", \"recipe\": \"0\", \"missing\": \"c\"}]}");
-    assert_refused(f, "none of the assets can be shown");
+    assert_refused(f, "plantcast-prep could not prepare any asset");
     write_good_manifest(f);
 }
 

@@ -612,8 +612,12 @@ TEST(test_refused)
     static const struct {
         const char *text, *why;
     } cases[] = {
-        { "", "no header" },         { "a,b\n1,2\n", "no header" },         { "Tag,Unit\n\"TT-1,2\n", "line 2: a quote is never closed" },
-        { "Tag,Unit\n", "no tags" }, { "PK\3\4rest", "not a spreadsheet" }, { "\xd0\xcf\x11\xe0", "save the sheet as .xlsx" },
+        { "", "no header" },
+        { "a,b\n1,2\n", "no header" },
+        { "Tag,Unit\n\"TT-1,2\n", "line 2 of the table: a quote is never closed" },
+        { "Tag,Unit\n", "no tags" },
+        { "PK\3\4rest", "not a spreadsheet" },
+        { "\xd0\xcf\x11\xe0", "save the sheet as .xlsx" },
         { "[1, 2]", "no tags" },
         { "<Tags><Tag name=\"T1\"/></Tags>", "XML is not supported" },
         { "{\"tags\":[{\"name\":\"P\",\"tagType\":\"UdtInstance\",\"typeId\":\"Pump\"}]}",

@@ -28,7 +28,8 @@ static std::string name_before(const std::string &bytes, size_t end)
 
 static void say_fbx(const std::string &name)
 {
-    printf("lost\t\t%s\tmodel\t\tNURBS and patches are not read: export the model as polygons\n", one_line(name).c_str());
+    printf("lost\t\t%s\tmodel\t\tPlantcast does not read NURBS and patches, so this part is not shown: export the model as polygons\n",
+           one_line(name).c_str());
 }
 
 void assimp_losses_of_fbx(const std::string &bytes)
@@ -95,7 +96,7 @@ void keep_last(std::string *text, size_t at, std::string_view line, std::map<std
         (*text)[i] = ' ';
     first->second = at;
     if (say)
-        printf("error\t1\t%s property %s more than once: the last value is used\n", owner.c_str(), one_line(name).c_str());
+        printf("error\t1\tin the FBX file, %s property %s more than once: the last value is used\n", owner.c_str(), one_line(name).c_str());
 }
 
 void say_graph(const fbx_graph &graph)
@@ -111,9 +112,10 @@ void say_graph(const fbx_graph &graph)
     for (const auto &[id, name] : graph.models) {
         auto parents = graph.parents.find(id);
         if (graph.shown.count(id) > 0 && reached.count(id) == 0)
-            printf("lost\t%s\t%s\tmodel\t\tthe model is not connected with the scene\n", id.c_str(), name.c_str());
+            printf("lost\t%s\t%s\tmodel\t\tthis part is not shown, because the FBX file does not connect it with the scene\n", id.c_str(),
+                   name.c_str());
         else if (parents != graph.parents.end() && parents->second > 1)
-            printf("error\t1\tmodel %s has %zu parents: the model is shown below each parent\n", name.c_str(), parents->second);
+            printf("error\t1\tFBX part %s has %zu parents: the part is shown below each parent\n", name.c_str(), parents->second);
     }
 }
 

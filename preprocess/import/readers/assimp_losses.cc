@@ -60,7 +60,8 @@ void assimp_losses_of_obj(const std::string &text)
         next = next == std::string::npos ? text.size() : next + 1;
     }
     if (surfaces > 0)
-        printf("error\t%zu\tfree-form surfaces (surf) are not read: export the surfaces as polygons\n", surfaces);
+        printf("error\t%zu\tPlantcast does not read free-form surfaces (surf), so they are not shown: export the surfaces as polygons\n",
+               surfaces);
 }
 
 void assimp_losses_of_dae(const std::string &text)
@@ -75,8 +76,8 @@ void assimp_losses_of_dae(const std::string &text)
         const bool lines = has_any(text, close, end, { "<lines", "<linestrips" });
         const char *kind = has_any(text, close, end, { "<convex_mesh" }) ? "convex hulls" : "splines and boundary representations";
         if (!shown && !lines && has_any(text, close, end, { "<convex_mesh", "<spline", "<brep" }))
-            printf("lost\t%s\t%s\tgeometry\t\t%s are not read: export the geometry as polygons\n", attribute(tag, "id").c_str(),
-                   attribute(tag, "name").c_str(), kind);
+            printf("lost\t%s\t%s\tgeometry\t\tPlantcast does not read %s, so this geometry is not shown: export the geometry as polygons\n",
+                   attribute(tag, "id").c_str(), attribute(tag, "name").c_str(), kind);
         at = end + strlen(end_tag);
     }
 }

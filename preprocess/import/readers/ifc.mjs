@@ -220,9 +220,9 @@ async function main([input, output, , , , encoding]) {
     if (/^\W*</.test(head) && /ifcxml/i.test(head))
         throw new Error('IFC in XML (ifcXML) is not supported: export the model as IFC in STEP text (.ifc)');
     if (!head.includes('ISO-10303-21'))
-        throw new Error('it is no IFC file: it does not begin with ISO-10303-21');
+        throw new Error('this is not an IFC file: it does not begin with ISO-10303-21');
     if (!bytes.subarray(-4096).toString('latin1').includes('END-ISO-10303-21'))
-        throw new Error('it is cut off: it does not end with END-ISO-10303-21');
+        throw new Error('the IFC file is truncated: it does not end with END-ISO-10303-21');
     // must precede the initialisation of web-ifc, which keeps references to the console functions it finds at that time
     const errors = collectErrors();
     const api = new webIfc.IfcAPI();
@@ -232,7 +232,7 @@ async function main([input, output, , , , encoding]) {
     const solids = readSolids(join(dirname(output), 'solids.glb'));
     const id = api.OpenModel(withPlacements(bytes, solids.placements), { COORDINATE_TO_ORIGIN: false, CIRCLE_SEGMENTS: CORNERS });
     if (id < 0 || !api.IsModelOpen(id))
-        throw new Error('it is no IFC file of a known schema, or is cut off');
+        throw new Error('this is not an IFC file of a known schema, or the file is truncated');
     const schema = api.GetModelSchema(id);
     const model = new Model(api, id);
     model.readRelations();
@@ -261,7 +261,7 @@ async function main([input, output, , , , encoding]) {
     ...lost, ...openingLines(model, uncut), ...drawnInstead,
     ...misplacedLines(model, types, isShown, solids.failed), ...errors.lines(model, solids), ''].join('\n'));
     if (drawn.size === 0)
-        throw new Error(`there is no surface in it${lost.length > 0 ? `: ${lost.length} elements have no triangles, such as ` +
+        throw new Error(`the IFC file contains no surface${lost.length > 0 ? `: ${lost.length} elements have no triangles, such as ` +
             lost[0].split('\t').slice(1).join(', ') : ''}`);
 }
 
@@ -269,6 +269,6 @@ main(process.argv.slice(2)).catch((error) => {
     // exceptions of this program are Error objects with a message for users; others come from web-ifc, so their text is only
     // quoted
     const reason = String(error?.message ?? error).split('\n')[0], ours = error?.constructor === Error;
-    process.stderr.write(`${ours && reason ? reason : `its content could not be read (${reason || 'no reason is known'})`}\n`);
+    process.stderr.write(`${ours && reason ? reason : `the IFC file could not be read (${reason || 'no reason is known'})`}\n`);
     process.exit(1);
 });

@@ -62,7 +62,7 @@ double measure_of(const ifc_model &in, const entity &parent, const value &measur
     if (parent.is("IFCCIRCLE"))
         return in.length * file::number(parent[1]) * in.angle * number;
     if (number != 0)
-        throw unsupported("Plantcast does not support lengths given as parameters of " + parent.type);
+        throw unsupported("this IFC shape cannot be built: Plantcast does not support lengths given as parameters of " + parent.type);
     return 0;
 }
 
@@ -70,10 +70,11 @@ segment_values segment_of(const ifc_model &in, const value &reference)
 {
     entity segment = in.statements.get(reference);
     if (!segment.is("IFCCURVESEGMENT"))
-        throw unsupported("Plantcast does not support " + segment.type);
+        throw unsupported("this IFC shape cannot be built: Plantcast does not support " + segment.type);
     gp_Trsf place = placement_of(in, segment[1]);
     if (!gp::DZ().Transformed(place).IsEqual(gp::DZ(), 1e-9))
-        throw unsupported("Plantcast does not support alignment segments that are tilted out of their plane");
+        throw unsupported(
+            "this IFC shape cannot be built: Plantcast does not support alignment segments that are tilted out of their plane");
     gp_Dir along = gp::DX().Transformed(place);
     gp_XYZ at = place.TranslationPart();
     entity parent = in.statements.get(segment[4]);
@@ -91,12 +92,12 @@ std::function<double(double)> heading_of(const ifc_model &in, const entity &pare
     /* radius if the parent curve is a circle, constant if it is a clothoid; in millimetres */
     double size = in.length * file::number(parent[1]);
     if (!(std::fabs(size) > LEAST_MM))
-        throw unsupported("the radius of an arc or clothoid is missing or 0");
+        throw unsupported("this IFC shape cannot be built: in its alignment, the radius of an arc or clothoid is missing or 0");
     if (parent.is("IFCCIRCLE"))
         return [size](double s) { return s / size; };
     if (parent.is("IFCCLOTHOID"))
         return [size](double s) { return std::copysign(s * s / (2 * size * size), size); };
-    throw unsupported("Plantcast does not support " + parent.type);
+    throw unsupported("this IFC shape cannot be built: Plantcast does not support " + parent.type);
 }
 
 plan_segment plan_segment_of(const ifc_model &in, const segment_values &from)
@@ -113,7 +114,8 @@ plan_segment plan_segment_of(const curve_piece &piece)
     gp_Vec along = piece.tangent(false);
     Handle(Geom_Circle) circle = Handle(Geom_Circle)::DownCast(piece.curve);
     if (circle.IsNull() && !piece.curve->IsKind(STANDARD_TYPE(Geom_Line)))
-        throw unsupported("the plan of an alignment may contain only lines, arcs and clothoids");
+        throw unsupported(
+            "this IFC shape cannot be built: the horizontal layout of its alignment may contain only lines, arcs and clothoids");
     double curvature = circle.IsNull() ? 0 : (circle->Axis().Direction().Z() > 0) == (piece.last > piece.first) ? 1 : -1;
     curvature /= circle.IsNull() ? 1 : circle->Radius();
     auto turn = [curvature](double d) { return curvature * d; };
@@ -143,7 +145,7 @@ std::function<gp_XY(double)> arc_of(double height, double heading, double radius
     return [=](double d) {
         double sine = std::sin(heading) + d / radius;
         if (!(std::fabs(sine) < 1))
-            throw unsupported("a segment of an alignment's height profile is longer than its arc");
+            throw unsupported("this IFC shape cannot be built: a segment of its alignment's vertical layout is longer than its arc");
         return gp_XY(height + radius * (std::cos(heading) - std::cos(std::asin(sine))), std::tan(std::asin(sine)));
     };
 }
@@ -154,9 +156,9 @@ std::function<gp_XY(double)> polynomial_of(const ifc_model &in, const segment_va
 {
     const std::vector<value> &x = segment.parent[1].list, &y = segment.parent[2].list;
     if (x.size() != 2 || file::number(x[0]) != 0 || file::number(x[1]) != 1 || segment.from_mm != 0 || y.size() < 2)
-        throw unsupported("Plantcast does not support an IfcPolynomialCurve unless its x is the distance");
+        throw unsupported("this IFC shape cannot be built: Plantcast does not support an IfcPolynomialCurve whose x is not the distance");
     if (std::fabs(file::number(y[1]) - std::tan(segment.heading_rad)) > 1e-4)
-        throw unsupported("Plantcast does not support a rotated IfcPolynomialCurve");
+        throw unsupported("this IFC shape cannot be built: Plantcast does not support a rotated IfcPolynomialCurve");
     std::vector<double> terms;
     for (const value &term : y)
         terms.push_back(file::number(term));
@@ -175,14 +177,15 @@ grade grade_of(const ifc_model &in, const segment_values &segment)
 {
     double at = segment.start.X(), height = segment.start.Y(), heading = segment.heading_rad, slope = std::tan(heading);
     if (!(std::cos(heading) > 1e-6))
-        throw unsupported("Plantcast does not support a vertical segment in an alignment's height profile");
+        throw unsupported(
+            "this IFC shape cannot be built: Plantcast does not support a vertical segment in an alignment's vertical layout");
     if (segment.parent.is("IFCLINE"))
         return { at, [=](double d) { return gp_XY(height + slope * d, slope); }, true };
     if (segment.parent.is("IFCPOLYNOMIALCURVE"))
         return { at, polynomial_of(in, segment), false };
     double radius = segment.parent.is("IFCCIRCLE") ? in.length * file::number(segment.parent[1]) : 0;
     if (!(radius > LEAST_MM))
-        throw unsupported("an alignment's height profile must not contain " + segment.parent.type);
+        throw unsupported("this IFC shape cannot be built: its alignment's vertical layout must not contain " + segment.parent.type);
     return { at, arc_of(height, heading, std::copysign(radius, segment.length_mm)), false };
 }
 
@@ -197,10 +200,12 @@ std::vector<grade> grades_of(const ifc_model &in, const entity &curve, double *e
         else
             out.push_back(grade_of(in, segment));
         if (out.size() > 1 && out.back().at_mm < out[out.size() - 2].at_mm)
-            throw unsupported("the segments of an alignment's height profile are not in order of distance");
+            throw unsupported(
+                "this IFC shape cannot be built: the segments of its alignment's vertical layout are not in order of distance");
     }
     if (out.empty() || std::fabs(out[0].at_mm) > JOINT_MM)
-        throw unsupported("an alignment's height profile does not begin at the start of the plan");
+        throw unsupported(
+            "this IFC shape cannot be built: its alignment's vertical layout does not begin at the start of the horizontal layout");
     return out;
 }
 
@@ -228,7 +233,8 @@ curve_piece piece_of(const ifc_model &in, const plan_segment &along, const grade
     double rise = std::atan(height(to).Y()) - std::atan(height(from).Y());
     double turn = std::fabs(along.turn(to) - along.turn(from)) + std::fabs(rise), span = (to - from) / in.length;
     if (!(turn < MOST_TURN_RAD))
-        throw unsupported("an alignment segment turns by more than 50 rad: its numbers are probably wrong");
+        throw unsupported("this IFC shape cannot be built: a segment of its alignment turns by more than 50 rad: the segment's numbers are "
+                          "probably wrong");
     int steps = along.straight && heights.straight ? 1 : std::max(8, static_cast<int>(std::ceil(turn / STEP_RAD)));
     Handle(TColgp_HArray1OfPnt) points = new TColgp_HArray1OfPnt(1, steps + 1);
     Handle(TColStd_HArray1OfReal) distances = new TColStd_HArray1OfReal(1, steps + 1);
@@ -251,7 +257,7 @@ curve_piece piece_of(const ifc_model &in, const plan_segment &along, const grade
     curve.Load(tangent(from), tangent(to), Standard_False);
     curve.Perform();
     if (!curve.IsDone())
-        throw unsupported("Open CASCADE cannot compute the curve of an alignment");
+        throw unsupported("this IFC shape cannot be built: Open CASCADE cannot compute the curve of its alignment");
     return { Handle(Geom_Curve)(curve.Curve()), from, to, span, to - from };
 }
 
@@ -268,7 +274,8 @@ std::vector<curve_piece> alignment_of(const ifc_model &in, const entity &curve)
     bool rises = curve.is("IFCGRADIENTCURVE");
     entity base = rises ? in.statements.get(curve[2]) : curve;
     if (rises && base.is("IFCGRADIENTCURVE"))
-        throw unsupported("Plantcast does not support an IfcGradientCurve based on another IfcGradientCurve");
+        throw unsupported(
+            "this IFC shape cannot be built: Plantcast does not support an IfcGradientCurve based on another IfcGradientCurve");
     double end_mm = HUGE_VAL, before_mm = 0;
     std::vector<grade> grades = { { 0, [](double) { return gp_XY(0, 0); }, true } };
     if (rises)

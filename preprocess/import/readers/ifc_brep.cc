@@ -152,9 +152,9 @@ class step_writer
     {
         entity profile = in.statements.get(surface[0]);
         if (profile.type.find("ARBITRARY") == std::string::npos)
-            throw unsupported("Plantcast does not support a surface that is swept from " + profile.type);
+            throw unsupported("this IFC shape cannot be built: Plantcast does not support a surface that is swept from " + profile.type);
         if (!surface[1].absent() && placement_of(in, surface[1]).Form() != gp_Identity)
-            throw unsupported("Plantcast does not support a position (Position) of a swept surface");
+            throw unsupported("this IFC shape cannot be built: Plantcast does not support a position (Position) of a swept surface");
         return text_of(profile[2]);
     }
 
@@ -212,7 +212,7 @@ class step_writer
             }
         /* 3D curves that also have curves in the parameter space of surfaces (IFCSURFACECURVE, IFCSEAMCURVE) are not converted:
            web-ifc builds the item instead */
-        throw unsupported("Plantcast does not support " + type);
+        throw unsupported("this IFC shape cannot be built: Plantcast does not support " + type);
     }
 
     void add(int id)
@@ -232,16 +232,17 @@ TopoDS_Shape brep_of(const ifc_model &in, const entity &item)
     std::istringstream text(writer.whole(item.id));
     STEPControl_Reader reader;
     if (reader.ReadStream("brep", text) != IFSelect_RetDone)
-        throw unsupported("Open CASCADE could not read the faces of this shape");
+        throw unsupported("this IFC shape cannot be built: Open CASCADE could not read its faces");
     Handle(Standard_Transient) root = reader.WS()->Model()->Value(reader.WS()->Model()->NextNumberForLabel("#8"));
     if (!reader.TransferEntity(root) || reader.NbShapes() < 1)
-        throw unsupported("Open CASCADE could not build the faces of this shape");
+        throw unsupported("this IFC shape cannot be built: Open CASCADE could not build its faces");
     TopoDS_Shape out = reader.OneShape();
     size_t faces = 0;
     for (TopExp_Explorer at(out, TopAbs_FACE); at.More(); at.Next())
         faces++;
     if (faces < writer.faces)
-        throw unsupported("only " + std::to_string(faces) + " of the shape's " + std::to_string(writer.faces) + " faces could be built");
+        throw unsupported("this IFC shape cannot be built: only " + std::to_string(faces) + " of its " + std::to_string(writer.faces) +
+                          " faces could be built");
     return out;
 }
 

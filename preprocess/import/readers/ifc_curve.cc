@@ -85,7 +85,7 @@ std::vector<curve_piece> indexed(const ifc_model &in, const entity &curve)
         for (const value &index : indices) {
             double number = file::number(index);
             if (number < 1 || number > static_cast<double>(points.size()))
-                throw unsupported("an IFC curve has an index outside its list of points");
+                throw unsupported("this IFC shape cannot be built: a curve has an index outside its list of points");
             at.push_back(points[static_cast<size_t>(number) - 1]);
         }
         if (segment.text == "IFCARCINDEX" && at.size() == 3)
@@ -107,11 +107,11 @@ double trim_at(const ifc_model &in, const curve_piece &basis, const value &selec
     if (point && (by_point || !parameter)) {
         GeomAPI_ProjectPointOnCurve onto(point_of(in, *point), basis.curve);
         if (onto.NbPoints() < 1)
-            throw unsupported("a trimming point of an IfcTrimmedCurve is not on its curve");
+            throw unsupported("this IFC shape cannot be built: a trimming point of an IfcTrimmedCurve is not on its curve");
         return onto.LowerDistanceParameter();
     }
     if (!parameter)
-        throw unsupported("an IfcTrimmedCurve lacks its trimming points");
+        throw unsupported("this IFC shape cannot be built: an IfcTrimmedCurve lacks its trimming points");
     return file::number(*parameter) * per_unit;
 }
 
@@ -125,10 +125,10 @@ std::vector<curve_piece> trimmed_curve(const ifc_model &in, const entity &curve,
     if (from.is("IFCPOLYLINE") || from.is("IFCCOMPOSITECURVE") || from.is("IFCINDEXEDPOLYCURVE")) {
         bool whole = false;
         if (curve[1].list.empty() || curve[2].list.empty())
-            throw unsupported("an IfcTrimmedCurve lacks its trimming points");
+            throw unsupported("this IFC shape cannot be built: an IfcTrimmedCurve lacks its trimming points");
         std::vector<curve_piece> out = trimmed(pieces_within(in, from, depth + 1), curve[1].list[0], curve[2].list[0], &whole);
         if (whole || !same)
-            throw unsupported("Plantcast does not support a trimmed or reversed " + from.type);
+            throw unsupported("this IFC shape cannot be built: Plantcast does not support a trimmed or reversed " + from.type);
         return out;
     }
     curve_piece basis = basis_of(in, from);
@@ -156,7 +156,7 @@ std::vector<curve_piece> composite(const ifc_model &in, const entity &curve, int
     for (const value &reference : curve[0].list) {
         entity segment = in.statements.get(reference);
         if (segment.type.compare(0, 24, "IFCCOMPOSITECURVESEGMENT") != 0 && !segment.is("IFCREPARAMETRISEDCOMPOSITECURVESEGMENT"))
-            throw unsupported("Plantcast does not support " + segment.type);
+            throw unsupported("this IFC shape cannot be built: Plantcast does not support " + segment.type);
         std::vector<curve_piece> parts = pieces_within(in, in.statements.get(segment[2]), depth + 1);
         if (segment[1].is(".F.")) {
             for (curve_piece &part : parts)
@@ -172,7 +172,7 @@ Handle(Geom_Curve) spline(const ifc_model &in, const entity &curve)
 {
     const std::vector<value> &points = curve[1].list, &counts = curve[5].list, &knots = curve[6].list;
     if (points.size() < 2 || counts.size() < 2 || counts.size() != knots.size())
-        throw unsupported("a B-spline curve has too few points or knots");
+        throw unsupported("this IFC shape cannot be built: a B-spline curve has too few points or knots");
     TColgp_Array1OfPnt poles(1, static_cast<int>(points.size()));
     TColStd_Array1OfReal weights(1, poles.Length()), at(1, static_cast<int>(knots.size()));
     TColStd_Array1OfInteger multiplicities(1, at.Length());
@@ -204,7 +204,8 @@ curve_piece basis_of(const ifc_model &in, const entity &curve)
     if (curve.is("IFCELLIPSE")) {
         double a = in.length * file::number(curve[1]), b = in.length * file::number(curve[2]);
         if (a < b)
-            throw unsupported("Plantcast does not support an IfcEllipse whose SemiAxis2 is longer than SemiAxis1");
+            throw unsupported(
+                "this IFC shape cannot be built: Plantcast does not support an IfcEllipse whose SemiAxis2 is longer than SemiAxis1");
         Handle(Geom_Ellipse) ellipse = new Geom_Ellipse(gp::XOY(), a, b);
         ellipse->Transform(placement_of(in, curve[0]));
         return { ellipse, 0, turn, turn / in.angle };
@@ -213,13 +214,13 @@ curve_piece basis_of(const ifc_model &in, const entity &curve)
         Handle(Geom_Curve) made = spline(in, curve);
         return { made, made->FirstParameter(), made->LastParameter(), made->LastParameter() - made->FirstParameter() };
     }
-    throw unsupported("Plantcast does not support " + curve.type);
+    throw unsupported("this IFC shape cannot be built: Plantcast does not support " + curve.type);
 }
 
 std::vector<curve_piece> pieces_within(const ifc_model &in, const entity &curve, int depth)
 {
     if (depth > MAX_CHAIN)
-        throw unsupported("IFC curves refer to each other in a circle");
+        throw unsupported("this IFC shape cannot be built: curves refer to each other in a circle");
     if (curve.is("IFCPOLYLINE"))
         return polyline(in, curve[0]);
     if (curve.is("IFCINDEXEDPOLYCURVE"))
@@ -262,7 +263,7 @@ gp_Vec curve_piece::tangent(bool at_end) const
     if (along.Magnitude() < Precision::Confusion())
         along = gp_Vec(start(), end());
     if (along.Magnitude() < Precision::Confusion())
-        throw unsupported("an IFC curve has no length");
+        throw unsupported("this IFC shape cannot be built: a curve has no length");
     return first > last ? -along.Normalized() : along.Normalized();
 }
 
@@ -270,7 +271,7 @@ gp_Pnt point_of(const ifc_model &in, const value &reference)
 {
     entity point = in.statements.get(reference);
     if (!point.is("IFCCARTESIANPOINT"))
-        throw unsupported("Plantcast does not support " + point.type);
+        throw unsupported("this IFC shape cannot be built: Plantcast does not support " + point.type);
     return coordinates_of(in, point[0]);
 }
 
@@ -311,7 +312,7 @@ gp_Trsf placement_of(const ifc_model &in, const value &reference)
     bool flat = from.is("IFCAXIS2PLACEMENT2D");
     gp_Dir z = flat ? gp::DZ() : direction_of(in, from[1], gp::DZ()), x = direction_of(in, from[flat ? 1 : 2], gp::DX());
     if (!flat && !from.is("IFCAXIS2PLACEMENT3D"))
-        throw unsupported("Plantcast does not support " + from.type);
+        throw unsupported("this IFC shape cannot be built: Plantcast does not support " + from.type);
     out.SetTransformation(frame_of(point_of(in, from[0]), z, x), gp_Ax3(gp::XOY()));
     return out;
 }
@@ -345,7 +346,7 @@ std::vector<curve_piece> pieces_of(const ifc_model &in, const entity &curve)
         if (length_of(part) > SHORTEST_MM)
             out.push_back(part);
     if (out.empty())
-        throw unsupported("an IFC curve has no length");
+        throw unsupported("this IFC shape cannot be built: a curve has no length");
     return out;
 }
 
@@ -410,12 +411,12 @@ TopoDS_Wire wire_of(const std::vector<curve_piece> &pieces)
         double low = std::fmin(part.first, part.last), high = std::fmax(part.first, part.last);
         BRepBuilderAPI_MakeEdge edge(part.curve, low, high);
         if (!edge.IsDone())
-            throw unsupported("an IFC curve has no length");
+            throw unsupported("this IFC shape cannot be built: a curve has no length");
         data->Add(part.first > part.last ? TopoDS::Edge(edge.Edge().Reversed()) : edge.Edge());
     }
     for (size_t i = 0; i + 1 < pieces.size(); i++)
         if (pieces[i].end().Distance(pieces[i + 1].start()) > JOINT_MM)
-            throw unsupported("an IFC curve has gaps");
+            throw unsupported("this IFC shape cannot be built: a curve has gaps");
     Handle(ShapeFix_Wire) fix = new ShapeFix_Wire;
     fix->Load(data);
     fix->SetPrecision(Precision::Confusion());

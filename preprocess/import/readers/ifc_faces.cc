@@ -66,7 +66,7 @@ bool add_face(const flat_face &from, TopoDS_Compound *to)
         return true;
     }
     if (!from.holes.empty())
-        throw unsupported("Plantcast does not support faces that have holes and are not flat");
+        throw unsupported("this IFC shape cannot be built: Plantcast does not support faces that have holes and are not flat");
     for (size_t i = 1; i + 1 < from.outer.size(); i++) {
         TopoDS_Wire corner = wire_through({ from.outer[0], from.outer[i], from.outer[i + 1] });
         if (!corner.IsNull() && BRepBuilderAPI_MakeFace(corner, Standard_True).IsDone())
@@ -83,7 +83,7 @@ TopoDS_Shape joined(const std::vector<flat_face> &faces)
     for (const flat_face &face : faces)
         made += add_face(face, &all);
     if (made == 0)
-        throw unsupported("none of the faces of this shape has an area");
+        throw unsupported("this IFC shape cannot be built: none of its faces has an area");
     if (made > MAX_SEWN_FACES)
         return all;
     BRepBuilderAPI_Sewing sewing(SEWN_MM);
@@ -102,7 +102,7 @@ polygon loop_of(const ifc_model &in, const entity &bound)
     entity loop = in.statements.get(bound[0]);
     polygon out;
     if (!loop.is("IFCPOLYLOOP"))
-        throw unsupported("Plantcast does not support " + loop.type);
+        throw unsupported("this IFC shape cannot be built: Plantcast does not support " + loop.type);
     for (const value &point : loop[0].list)
         out.push_back(point_of(in, point));
     if (bound[1].is(".F."))
@@ -150,11 +150,11 @@ polygon picked(const polygon &points, const value &indices, const value &renumbe
         double at = file::number(index);
         if (!renumbered.list.empty()) {
             if (at < 1 || at > static_cast<double>(renumbered.list.size()))
-                throw unsupported("an IFC face has an index outside its list of points");
+                throw unsupported("this IFC shape cannot be built: a face has an index outside the list of points");
             at = file::number(renumbered.list[static_cast<size_t>(at) - 1]);
         }
         if (at < 1 || at > static_cast<double>(points.size()))
-            throw unsupported("an IFC face has an index outside its list of points");
+            throw unsupported("this IFC shape cannot be built: a face has an index outside the list of points");
         out.push_back(points[static_cast<size_t>(at) - 1]);
     }
     return out;

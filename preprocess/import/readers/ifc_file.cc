@@ -52,13 +52,13 @@ struct ifc_parser {
         value out;
         out.kind = value::LIST;
         if (depth > MAX_NESTING)
-            throw unsupported("lists in the IFC file are nested too deep");
+            throw unsupported("the IFC file is damaged: its lists are nested too deep");
         for (at++; next() != ')';) {
             out.list.push_back(one(depth + 1));
             if (next() == ',')
                 at++;
             else if (next() != ')')
-                throw unsupported("a statement of the IFC file is damaged");
+                throw unsupported("a statement of the IFC file is damaged: export the model again");
         }
         at++;
         return out;
@@ -86,7 +86,7 @@ struct ifc_parser {
         out.kind = value::NUMBER;
         out.number = strtod(bytes.c_str() + at, &end);
         if (end == bytes.c_str() + at || !std::isfinite(out.number))
-            throw unsupported("a number in the IFC file is damaged");
+            throw unsupported("a number in the IFC file is damaged: export the model again");
         at = static_cast<size_t>(end - bytes.c_str());
         return out;
     }
@@ -112,7 +112,7 @@ struct ifc_parser {
         if (c == '.') {
             size_t end = bytes.find('.', at + 1);
             if (end == std::string::npos)
-                throw unsupported("a statement of the IFC file is damaged");
+                throw unsupported("a statement of the IFC file is damaged: export the model again");
             out.kind = value::NAME;
             out.text = bytes.substr(at, end + 1 - at);
             at = end + 1;
@@ -121,7 +121,7 @@ struct ifc_parser {
         if (isalpha(static_cast<unsigned char>(c))) { /* typed value, such as IFCLABEL('P-101') */
             std::string type = word();
             if (next() != '(')
-                throw unsupported("a statement of the IFC file is damaged");
+                throw unsupported("a statement of the IFC file is damaged: export the model again");
             out = list(depth);
             out.text = type;
             return out;
@@ -184,7 +184,7 @@ entity file::get(int id) const
 entity file::get(const value &reference) const
 {
     if (reference.kind != value::REFERENCE)
-        throw unsupported("a statement of the IFC file lacks a reference");
+        throw unsupported("the IFC file is damaged: a statement lacks a reference to another statement");
     return get(reference.id);
 }
 
@@ -193,7 +193,7 @@ double file::number(const value &from)
     if (from.kind == value::LIST && from.list.size() == 1)
         return number(from.list[0]);
     if (from.kind != value::NUMBER)
-        throw unsupported("a statement of the IFC file lacks a number");
+        throw unsupported("the IFC file is damaged: a statement lacks a number");
     return from.number;
 }
 

@@ -104,7 +104,7 @@ export function findLosses(model, product, isShown, failed) {
     }
     const isItem = (id) => !named.has(id) && !model.line(id)?.GlobalId && model.classOf(id) !== GRID;
     const drawn = [...failed].filter(([id]) => isItem(id)).map(([id, reason]) =>
-        fields('error', 1, `#${id} ${model.classOf(id)} is built by web-ifc, with coarse circles, because Open CASCADE cannot build it: ${
+        fields('error', 1, `#${id} ${model.classOf(id)} is built by web-ifc, with coarse circles, instead of by Open CASCADE: ${
             reason}`));
     return { lost, lines, ids, drawn };
 }
@@ -127,6 +127,6 @@ export function misplacedLines(model, { product, grid }, isShown, failed) {
         found.set(why, [...found.get(why) ?? [], `#${id} ${model.nameOf(id)} (${model.classOf(id)}, ${guid})`]);
     }
     return [...found].map(([why, names]) => fields('error', names.length,
-        `at a wrong place, because a grid placement is not computed (${why}): ${
+        `elements shown at a wrong place, because a grid placement is not computed (${why}): ${
             names.slice(0, MAX_IDS).join(', ')}${names.length > MAX_IDS ? ', ...' : ''}`));
 }

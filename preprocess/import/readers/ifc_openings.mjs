@@ -74,7 +74,8 @@ export function uncutOpenings(model, voids, geometry, solids) {
         const hosts = elements.filter((element) => shown.has(element)).map((element) => of(element, shown.get(element)));
         const filled = points.filter((point) => hosts.some((host) => isInside(point, host))).length;
         if (points.length === 0 || filled > SHARE * points.length)
-            out.push({ opening, host, elements, why: !cutter ? 'its shape is not built' : points.length === 0 ? 'it encloses no space'
+            out.push({ opening, host, elements, why: !cutter ? 'the shape of the opening cannot be built'
+                : points.length === 0 ? 'the opening encloses no space'
                 : elements.map((element) => solids.failed.get(element)).find(Boolean) ?? '' });
     });
     return out;

@@ -43,7 +43,8 @@ std::vector<curve_piece> axis_of(const ifc_model &in, const entity &axis, double
         else if (piece.curve->IsKind(STANDARD_TYPE(Geom_Line)))
             piece.curve->Translate(left);
         else
-            throw unsupported("Plantcast does not support an offset from a grid axis that is neither a line nor an arc");
+            throw unsupported("this IFC placement cannot be computed: Plantcast does not support an offset from a grid axis that is "
+                              "neither a line nor an arc");
     }
     return out;
 }
@@ -79,7 +80,7 @@ crossing crossing_of(const ifc_model &in, const value &reference)
 {
     entity from = in.statements.get(reference);
     if (!from.is("IFCVIRTUALGRIDINTERSECTION") || from[0].list.size() != 2)
-        throw unsupported("Plantcast does not support " + from.type);
+        throw unsupported("this IFC placement cannot be computed: Plantcast does not support " + from.type);
     auto offset = [&](size_t i) { return i < from[1].list.size() ? in.length * file::number(from[1].list[i]) : 0; };
     std::vector<curve_piece> axes[2];
     for (size_t i = 0; i < 2; i++)
@@ -87,7 +88,7 @@ crossing crossing_of(const ifc_model &in, const value &reference)
     crossing out;
     bool lines = axes[0].size() == 1 && axes[1].size() == 1;
     if (!find_crossing(axes[0], axes[1], false, &out) && (!lines || !find_crossing(axes[0], axes[1], true, &out)))
-        throw unsupported("the axes of the grid placement do not meet");
+        throw unsupported("this IFC placement cannot be computed: the two grid axes do not meet");
     out.at.Translate(gp_Vec(0, 0, offset(2)));
     return out;
 }
@@ -97,7 +98,7 @@ int grid_placement(const ifc_model &in, int axis)
 {
     auto found = in.grids.find(axis);
     if (found == in.grids.end() && in.lacks_grid)
-        throw unsupported("an IFC grid is damaged");
+        throw unsupported("this IFC placement cannot be computed: its grid is damaged");
     return found == in.grids.end() ? 0 : found->second;
 }
 
@@ -128,7 +129,7 @@ relative_placement in_grid(const ifc_model &in, const entity &from)
         x = gp_Vec(origin.at, crossing_of(in, from[at + 1]).at);
     x.SetZ(0);
     if (x.Magnitude() < NEAR_MM)
-        throw unsupported("an IFC grid placement has no direction");
+        throw unsupported("this IFC placement cannot be computed: it has no direction");
     out.place.SetTransformation(gp_Ax3(origin.at, gp::DZ(), gp_Dir(x)), gp_Ax3(gp::XOY()));
     return out;
 }
@@ -139,14 +140,14 @@ gp_Trsf placement_within(const ifc_model &in, const value &reference, int depth)
         return gp_Trsf();
     entity from = in.statements.get(reference);
     if (depth > MAX_CHAIN)
-        throw unsupported("IFC placements refer to each other in a circle");
+        throw unsupported("this IFC placement cannot be computed: placements refer to each other in a circle");
     if (from.is("IFCGRIDPLACEMENT")) {
         relative_placement grid = in_grid(in, from);
         return placement_within(in, grid.above, depth + 1) * grid.place;
     }
     bool linear = from.is("IFCLINEARPLACEMENT") && !from[2].absent();
     if (!from.is("IFCLOCALPLACEMENT") && !linear)
-        throw unsupported("Plantcast does not support " + from.type);
+        throw unsupported("this IFC placement cannot be computed: Plantcast does not support " + from.type);
     return placement_within(in, from[0], depth + 1) * placement_of(in, from[linear ? 2 : 1]);
 }
 

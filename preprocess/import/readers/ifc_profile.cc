@@ -61,7 +61,7 @@ std::vector<TopoDS_Face> faces_of(const TopoDS_Wire &outer, const std::vector<To
 {
     BRepBuilderAPI_MakeFace face(gp_Pln(gp::XOY()), outer, Standard_True);
     if (!face.IsDone())
-        throw unsupported("the outline of a profile is not closed, or crosses itself");
+        throw unsupported("this IFC shape cannot be built: the outline of its profile (cross-section) is not closed, or crosses itself");
     for (const TopoDS_Wire &hole : holes)
         face.Add(hole);
     ShapeFix_Face fix(face.Face());
@@ -153,7 +153,7 @@ std::vector<TopoDS_Face> parametric(const std::string &type, const lengths &d)
         double left = -d[0] / 2, low = -d[2] / 2;
         return faces_of(outline({ { left, low, 0 }, { -left, low, 0 }, { left + d[3] + d[1], -low, 0 }, { left + d[3], -low, 0 } }), {});
     }
-    throw unsupported("Plantcast does not support " + type);
+    throw unsupported("this IFC shape cannot be built: Plantcast does not support " + type);
 }
 
 /* Returns points along the pieces of a curve. The chords between them deviate from the curve by at most chord_mm. */
@@ -180,7 +180,7 @@ TopoDS_Wire thickened(const std::vector<curve_piece> &pieces, double thickness, 
         gp_Vec in(line[before], line[before + 1]), on(line[after], line[after + 1]);
         gp_Vec left = gp_Vec(gp::DZ()).Crossed(in.Normalized()) + gp_Vec(gp::DZ()).Crossed(on.Normalized());
         if (left.Magnitude() < 0.2) /* reject a corner so acute that its mitre would be longer than ten thicknesses */
-            throw unsupported("the centre line of a profile turns back on itself");
+            throw unsupported("this IFC shape cannot be built: the centre line of its profile (cross-section) turns back on itself");
         gp_Vec side = left.Normalized() * (thickness / 2 / (left.Magnitude() / 2));
         out.push_back({ line[i].X() + side.X(), line[i].Y() + side.Y(), 0 });
         right.push_back(line[i].Translated(-side));
@@ -217,7 +217,7 @@ std::vector<TopoDS_Face> assembled(const ifc_model &in, const entity &profile, i
 std::vector<TopoDS_Face> profile_within(const ifc_model &in, const entity &profile, int depth)
 {
     if (depth > MAX_CHAIN)
-        throw unsupported("IFC profiles refer to each other in a circle");
+        throw unsupported("this IFC shape cannot be built: profiles refer to each other in a circle");
     if (profile.is("IFCARBITRARYCLOSEDPROFILEDEF") || profile.is("IFCARBITRARYPROFILEDEFWITHVOIDS")) {
         std::vector<TopoDS_Wire> holes;
         for (const value &reference : profile[3].list)

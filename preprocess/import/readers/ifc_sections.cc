@@ -31,7 +31,7 @@ TopoDS_Shape through(const std::vector<TopoDS_Wire> &sections)
         loft.AddWire(section);
     loft.Build();
     if (!loft.IsDone())
-        throw unsupported("Open CASCADE cannot join the cross-sections of this shape to a solid");
+        throw unsupported("this IFC shape cannot be built: Open CASCADE cannot join its cross-sections to a solid");
     return loft.Shape();
 }
 
@@ -52,7 +52,7 @@ TopoDS_Shape spine_of(const ifc_model &in, const entity &item)
     const std::vector<value> &sections = item[1].list, &places = item[2].list;
     std::vector<TopoDS_Face> faces;
     if (sections.size() < 2 || sections.size() != places.size())
-        throw unsupported("an IfcSectionedSpine has no cross-sections, or does not place each of them");
+        throw unsupported("this IFC shape cannot be built: its IfcSectionedSpine has no cross-sections, or does not place each of them");
     for (size_t i = 0; i < sections.size(); i++)
         faces.push_back(moved(profile_of(in, in.statements.get(sections[i])).at(0), placement_of(in, places[i])));
     return through_faces(faces);
@@ -73,7 +73,7 @@ double parameter_at(const curve_piece &part, double distance_mm)
         return part.first + (part.last - part.first) * distance_mm / part.level_mm;
     GCPnts_AbscissaPoint point(GeomAdaptor_Curve(part.curve), part.first > part.last ? -distance_mm : distance_mm, part.first);
     if (!point.IsDone())
-        throw unsupported("a cross-section is not on its curve");
+        throw unsupported("this IFC shape cannot be built: a cross-section is not on its curve");
     return point.Parameter();
 }
 
@@ -94,7 +94,7 @@ gp_Trsf upright(const std::vector<curve_piece> &pieces, const station &at)
     part->curve->D1(parameter_at(*part, left_mm), origin, ahead);
     gp_Vec level(back ? -ahead.X() : ahead.X(), back ? -ahead.Y() : ahead.Y(), 0);
     if (level.Magnitude() < 1e-9)
-        throw unsupported("Plantcast does not support cross-sections where their curve is vertical");
+        throw unsupported("this IFC shape cannot be built: Plantcast does not support cross-sections where their curve is vertical");
     gp_Dir forward(level), left = gp::DZ().Crossed(forward);
     origin.Translate(gp_Vec(left) * at.offset.X() + gp_Vec(gp::DZ()) * at.offset.Y() + gp_Vec(forward) * at.offset.Z());
     gp_Trsf out;
@@ -107,11 +107,11 @@ station station_of(const ifc_model &in, const value &reference, const value &pro
     entity place = in.statements.get(reference), at = place;
     if (place.is("IFCAXIS2PLACEMENTLINEAR")) {
         if (!direction_of(in, place[1], gp::DZ()).IsParallel(gp::DZ(), 1e-6))
-            throw unsupported("Plantcast does not support cross-sections that are not upright");
+            throw unsupported("this IFC shape cannot be built: Plantcast does not support cross-sections that are not upright");
         at = in.statements.get(place[0]);
     }
     if (!at.is("IFCPOINTBYDISTANCEEXPRESSION") && !at.is("IFCDISTANCEEXPRESSION"))
-        throw unsupported("Plantcast does not support " + at.type);
+        throw unsupported("this IFC shape cannot be built: Plantcast does not support " + at.type);
     auto length = [&](size_t i) { return in.length * file::number(at[i], 0); };
     return { length(0), gp_Vec(length(1), length(2), length(3)), profile.id };
 }
@@ -143,7 +143,8 @@ void add_between(const ifc_model &in, const std::vector<curve_piece> &pieces, st
             if (share > 1 - 1e-9)
                 return;
             if (from.profile != to.profile)
-                throw unsupported("Plantcast does not support cross-sections that change along a curved part");
+                throw unsupported(
+                    "this IFC shape cannot be built: Plantcast does not support cross-sections that change along a curved part");
             out->push_back(
                 { from.along_mm + share * (to.along_mm - from.along_mm), from.offset + (to.offset - from.offset) * share, from.profile });
         }
@@ -157,7 +158,7 @@ TopoDS_Shape horizontal_of(const ifc_model &in, const entity &item)
     std::vector<station> stations;
     std::vector<TopoDS_Face> faces;
     if (sections.size() < 2 || sections.size() != places.size())
-        throw unsupported("the curve (Directrix) of an IFC solid has no cross-sections, or does not place each of them");
+        throw unsupported("this IFC shape cannot be built: its curve (Directrix) has no cross-sections, or does not place each of them");
     for (size_t i = 0; i < sections.size(); i++) {
         station next = station_of(in, places[i], sections[i]);
         if (i > 0)
@@ -183,11 +184,11 @@ section_frame frame_at(const curve_piece &piece, double parameter, const gp_Dir 
     gp_Vec along;
     piece.curve->D1(parameter, at, along);
     if (along.Magnitude() < 1e-9)
-        throw unsupported("a curve has no direction at one of its points");
+        throw unsupported("this IFC shape cannot be built: its curve has no direction at one of the curve's points");
     if (piece.first > piece.last)
         along.Reverse();
     if (gp_Dir(along).IsParallel(reference, 1e-6))
-        throw unsupported("the reference direction of a swept profile is parallel to its curve");
+        throw unsupported("this IFC shape cannot be built: the reference direction of its swept profile is parallel to the curve");
     return { at, gp_Dir(along), gp_Ax3(at, gp_Dir(along), reference).XDirection(), gp_Dir(along) };
 }
 
@@ -233,7 +234,7 @@ std::vector<std::vector<section_frame>> frames_of(const ifc_model &in, const std
             break;
         section_frame next = frame_at(pieces[i + 1], pieces[i + 1].first, reference), &last = out.back().back();
         if (next.along.Angle(last.along) > 3)
-            throw unsupported("an IFC curve turns back on itself");
+            throw unsupported("this IFC shape cannot be built: its curve turns back on itself");
         last.plane = next.plane = gp_Dir(next.along.XYZ() + last.along.XYZ());
         if (!same_section(last, next))
             out.push_back({ next });
@@ -266,7 +267,7 @@ TopoDS_Shape through_faces(const std::vector<TopoDS_Face> &faces)
     for (const TopoDS_Face &face : faces) {
         outlines.push_back(wires_of(face));
         if (outlines.back().size() != outlines[0].size())
-            throw unsupported("the cross-sections of an IFC solid have different numbers of holes");
+            throw unsupported("this IFC shape cannot be built: its cross-sections have different numbers of holes");
     }
     for (size_t i = 0; i < outlines[0].size(); i++) {
         std::vector<TopoDS_Wire> sections;

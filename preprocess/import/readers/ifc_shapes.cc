@@ -45,7 +45,7 @@ double unit_of(const file &in, const entity &unit, int depth)
         return si_prefix(unit[2]);
     entity factor = in.get(unit[3]); /* an IfcConversionBasedUnit, such as the foot: a factor and another unit, which are multiplied */
     if (depth > MAX_CHAIN)
-        throw unsupported("IFC units refer to each other in a circle");
+        throw unsupported("the IFC file cannot be read: its units refer to each other in a circle");
     return file::number(factor[0]) * unit_of(in, in.get(factor[1]), depth + 1);
 }
 
@@ -67,7 +67,7 @@ ifc_model model_of(const file &in, double chord_mm)
         }
     });
     if (!(out.length > 0) || !(out.angle > 0))
-        throw unsupported("the file has no valid unit of length or of plane angle");
+        throw unsupported("the IFC file cannot be read: it has no valid unit of length or of plane angle");
     return out;
 }
 
@@ -171,7 +171,7 @@ void collect(ifc_writer *w, const entity &representation, const gp_GTrsf &above,
 {
     const ifc_model &in = w->in;
     if (depth > MAX_CHAIN)
-        throw unsupported("IFC representations refer to each other in a circle");
+        throw unsupported("this IFC shape cannot be built: representations refer to each other in a circle");
     for (const value &reference : representation[3].list) {
         entity item = in.statements.get(reference);
         if (item.is("IFCMAPPEDITEM")) {
@@ -249,7 +249,7 @@ void cut_openings(ifc_writer *w, const entity &product, std::vector<placed_item>
         std::vector<placed_item> parts;
         gp_GTrsf place(to_element * object_placement(in, opening[PLACEMENT]));
         if (!collect_all(w, opening, true, &parts))
-            throw unsupported("its opening #" + std::to_string(id) + " cannot be built");
+            throw unsupported("this IFC element cannot be built: its opening #" + std::to_string(id) + " cannot be built");
         for (const placed_item &part : parts)
             cutters.push_back(shape_at(in, part.id, place * part.place));
     }
@@ -259,7 +259,7 @@ void cut_openings(ifc_writer *w, const entity &product, std::vector<placed_item>
         for (const TopoDS_Shape &cutter : cutters) {
             BRepAlgoAPI_Cut cut(shape, cutter);
             if (!cut.IsDone() || cut.Shape().IsNull())
-                throw unsupported("Open CASCADE cannot cut the openings out of this element");
+                throw unsupported("this IFC element cannot be built: Open CASCADE cannot cut out its openings");
             shape = cut.Shape();
         }
         if (!TopExp_Explorer(shape, TopAbs_FACE).More())
@@ -340,7 +340,7 @@ void add_placements(ifc_writer *w)
         attempt(w, id, [&] {
             long long unused = last + 1LL + 4 * static_cast<long long>(statements.size());
             if (unused > INT_MAX - 3)
-                throw unsupported("the file has no unused statement number for this grid placement");
+                throw unsupported("this IFC placement cannot be computed: the file has no unused statement number for it");
             statements[id] = as_local_placement(w->in, w->in.statements.get(id), static_cast<int>(unused));
         });
     });

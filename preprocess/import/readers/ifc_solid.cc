@@ -102,7 +102,7 @@ trihedron on_surface(const ifc_model &in, const entity &surface, const curve_pie
         return { gp_Dir(out - gp_Vec(z) * out.Dot(gp_Vec(z))), z };
     }
     if (!surface.is("IFCSURFACEOFLINEAREXTRUSION"))
-        throw unsupported("Plantcast does not support a profile that is swept along " + surface.type);
+        throw unsupported("this IFC shape cannot be built: Plantcast does not support a profile that is swept along " + surface.type);
     gp_Dir along = direction_of(in, surface[2], gp::DZ()).Transformed(place);
     return { gp_Dir(first.tangent(false).Crossed(gp_Vec(along))), along };
 }
@@ -118,7 +118,9 @@ TopoDS_Shape along_curve(const ifc_model &in, const entity &item)
     else
         frame = on_surface(in, in.statements.get(item[5]), pieces.front());
     if (whole)
-        printf("error\t1\tOpen CASCADE: #%d: the start and end parameters are beyond the curve: using the whole curve\n", item.id);
+        printf(
+            "error\t1\tIFC statement #%d: the start and end parameters are beyond the curve, so the solid is built along the whole curve\n",
+            item.id);
     std::vector<TopoDS_Face> faces = profile_of(in, in.statements.get(item[0]));
     bool level = true; /* true: the profile's fixed direction is perpendicular to the curve at both ends of each piece */
     for (const curve_piece &piece : pieces)
@@ -163,7 +165,7 @@ TopoDS_Shape half_space(const ifc_model &in, const entity &item)
 {
     entity surface = in.statements.get(item[0]);
     if (!surface.is("IFCPLANE"))
-        throw unsupported("Plantcast does not support a half space that is bounded by " + surface.type);
+        throw unsupported("this IFC shape cannot be built: Plantcast does not support a half space that is bounded by " + surface.type);
     gp_Trsf place = placement_of(in, surface[0]);
     gp_Dir away = gp::DZ().Transformed(place);
     gp_Pnt at = gp::Origin().Transformed(place), inside = at.Translated(gp_Vec(away) * (item[1].is_true() ? -1 : 1));
@@ -189,7 +191,7 @@ TopoDS_Shape boolean(const ifc_model &in, const entity &item, int depth)
     else
         out = BRepAlgoAPI_Common(first, second).Shape();
     if (out.IsNull())
-        throw unsupported("Open CASCADE cannot carry out the IFC boolean operation");
+        throw unsupported("this IFC shape cannot be built: Open CASCADE cannot carry out its boolean operation");
     return out;
 }
 
@@ -222,7 +224,7 @@ bool is_built(const std::string &type)
 TopoDS_Shape solid_of(const ifc_model &in, const entity &item, int depth)
 {
     if (depth > MAX_CHAIN)
-        throw unsupported("IFC solids refer to each other in a circle");
+        throw unsupported("this IFC shape cannot be built: solids refer to each other in a circle");
     if (item.is("IFCSWEPTDISKSOLID") || item.is("IFCSWEPTDISKSOLIDPOLYGONAL"))
         return disk_of(in, item);
     if (item.is("IFCADVANCEDBREP") || item.is("IFCADVANCEDBREPWITHVOIDS"))
@@ -247,7 +249,7 @@ TopoDS_Shape solid_of(const ifc_model &in, const entity &item, int depth)
         return brep_of(in, item);
     TopoDS_Shape out = primitive(in, item);
     if (out.IsNull())
-        throw unsupported("Plantcast does not support " + item.type);
+        throw unsupported("this IFC shape cannot be built: Plantcast does not support " + item.type);
     return out;
 }
 

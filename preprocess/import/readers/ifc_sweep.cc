@@ -40,10 +40,10 @@ TopoDS_Shape wire_swept(const TopoDS_Wire &outline, const TopoDS_Wire &spine, co
     pipe.SetTransitionMode(BRepBuilderAPI_RightCorner);
     pipe.Add(outline);
     if (!pipe.IsReady())
-        throw unsupported("Open CASCADE cannot sweep a profile along its curve");
+        throw unsupported("this IFC shape cannot be built: Open CASCADE cannot sweep its profile along the curve");
     pipe.Build();
     if (!pipe.IsDone())
-        throw unsupported("Open CASCADE cannot sweep a profile along its curve");
+        throw unsupported("this IFC shape cannot be built: Open CASCADE cannot sweep its profile along the curve");
     pipe.MakeSolid(); /* ignores the return value: MakeSolid() returns false for a closed curve, whose tube has no ends to close */
     return pipe.Shape();
 }
@@ -68,7 +68,7 @@ TopoDS_Shape along(const TopoDS_Face &face, const std::vector<curve_piece> &piec
         if (!wires.Current().IsSame(outer)) {
             BRepAlgoAPI_Cut cut(out, wire_swept(TopoDS::Wire(wires.Current()), spine, up));
             if (!cut.IsDone())
-                throw unsupported("Open CASCADE cannot sweep a hollow profile along its curve");
+                throw unsupported("this IFC shape cannot be built: Open CASCADE cannot sweep its hollow profile along the curve");
             out = cut.Shape();
         }
     return out;
@@ -129,7 +129,7 @@ TopoDS_Shape disk_along(const ifc_model &in, const TopoDS_Face &face, double are
         } catch (const Standard_Failure &) { /* this sweeping method failed: the loop tries the next one */
         } catch (const unsupported &) {
         }
-    throw unsupported("Open CASCADE cannot sweep a pipe along its curve");
+    throw unsupported("this IFC shape cannot be built: Open CASCADE cannot sweep the pipe along its curve");
 }
 
 TopoDS_Face disk(double radius, double hole)
@@ -161,10 +161,12 @@ TopoDS_Shape disk_of(const ifc_model &in, const entity &item)
     double fillet = item.is("IFCSWEPTDISKSOLIDPOLYGONAL") ? in.length * file::number(item[5], 0) : 0;
     bool whole = false;
     if (radius <= 0 || hole >= radius)
-        throw unsupported("the outer radius of a pipe is 0, or not larger than its inner radius");
+        throw unsupported("this IFC shape cannot be built: the outer radius of the pipe is 0, or not larger than its inner radius");
     std::vector<curve_piece> pieces = trimmed(pieces_of(in, in.statements.get(item[0])), item[3], item[4], &whole);
     if (whole)
-        printf("error\t1\tOpen CASCADE: #%d: the start and end parameters are beyond the curve: using the whole curve\n", item.id);
+        printf(
+            "error\t1\tIFC statement #%d: the start and end parameters are beyond the curve, so the solid is built along the whole curve\n",
+            item.id);
     if (fillet > 0) {
         std::vector<gp_Pnt> points = { pieces.front().start() };
         for (const curve_piece &part : pieces)

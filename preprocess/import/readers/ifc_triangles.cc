@@ -24,7 +24,7 @@ void take_face(const TopoDS_Face &face, triangles *to)
     TopLoc_Location place;
     Handle(Poly_Triangulation) mesh = BRep_Tool::Triangulation(face, place);
     if (mesh.IsNull())
-        throw unsupported("a face of this shape could not be tessellated");
+        throw unsupported("this IFC shape cannot be built: Open CASCADE could not tessellate one of its faces");
     const gp_Trsf &moved = place.Transformation();
     bool reversed = (face.Orientation() == TopAbs_REVERSED) != moved.IsNegative();
     uint32_t first = static_cast<uint32_t>(to->points.size());
@@ -53,10 +53,10 @@ triangles triangles_of(const ifc_model &in, const TopoDS_Shape &shape)
     for (TopExp_Explorer faces(shape, TopAbs_FACE); faces.More(); faces.Next())
         take_face(TopoDS::Face(faces.Current()), &out);
     if (out.corners.empty())
-        throw unsupported("this shape has no triangles left");
+        throw unsupported("this IFC shape cannot be built: none of its faces has triangles");
     for (const gp_Pnt &at : out.points)
         if (!std::isfinite(at.X()) || !std::isfinite(at.Y()) || !std::isfinite(at.Z()))
-            throw unsupported("a coordinate of this shape is infinite or not a number");
+            throw unsupported("this IFC shape cannot be built: one of its coordinates is infinite or not a number");
     return out;
 }
 

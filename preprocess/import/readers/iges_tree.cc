@@ -317,7 +317,7 @@ TDF_Label add_group(iges_tree *t, const iges_item &group, int depth)
 TDF_Label label_of(iges_tree *t, const iges_item &what, int depth)
 {
     if (depth > MAX_DEPTH)
-        refuse("groups are nested deeper than %d levels, or in a circle", MAX_DEPTH);
+        refuse("groups of the IGES file are nested deeper than %d levels, or in a circle", MAX_DEPTH);
     auto known = t->made.find(what.from.get());
     if (known != t->made.end())
         return known->second;

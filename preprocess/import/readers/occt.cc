@@ -216,7 +216,7 @@ void say_lost_part(occt_reader *r, const TDF_Label &label, const char *id, const
     else if (of.missing == 0)
         why = "the part's " + std::to_string(of.faces) + " faces have no extent, or coordinates that are infinite or not numbers";
     else
-        why = std::to_string(of.missing) + " of the part's " + std::to_string(of.faces) + " faces could not be tessellated";
+        why = std::to_string(of.missing) + " of the part's " + std::to_string(of.faces) + " faces could not be converted to triangles";
     if (why.empty())
         r->lines.push_back(name.empty() ? "a part without a name" : name);
     else
@@ -268,7 +268,7 @@ void add(occt_reader *r, const TDF_Label &label, int parent, XCAFPrs_Style style
     if (depth > MAX_DEPTH)
         refuse("assemblies are nested deeper than %d levels, or in a circle", MAX_DEPTH);
     if (++r->nodes > MAX_NODES)
-        refuse("more than %zu parts", MAX_NODES);
+        refuse("the model has more than %zu parts, the most that Plantcast supports", MAX_NODES);
     if (XCAFDoc_ShapeTool::IsReference(label) && !XCAFDoc_ShapeTool::GetReferredShape(label, product))
         return;
     take_color(r->colors, label, &style);
@@ -327,10 +327,11 @@ std::string read_step(const char *path, const char *output, Handle(TDocStd_Docum
         remove(copy.c_str());
     for (const auto &each : files.externals)
         if (!each.second.found)
-            printf("error\t1\treferenced file %s is not in the model's folder\n", one_line(each.second.named).c_str());
+            printf("error\t1\tthe model refers to file %s, which is not in the model's folder, so its parts are not shown\n",
+                   one_line(each.second.named).c_str());
     *externals = files.externals;
     if (!transferred)
-        refuse("Open CASCADE could not read the shapes of the file");
+        refuse("Open CASCADE could not read the shapes in the CAD file: export the model again");
     std::string units;
     for (int i = 1; i <= lengths.Length(); i++)
         if (units.find(lengths.Value(i).ToCString()) == std::string::npos)
@@ -350,7 +351,7 @@ std::string read_iges(const char *path, Handle(TDocStd_Document) document, const
     iges_tree_add(iges, document, encoding);
     occt_losses_say(iges.WS(), "");
     if (iges.NbShapes() < 1)
-        refuse("Open CASCADE could not read the shapes of the file");
+        refuse("Open CASCADE could not read the shapes in the CAD file: export the model again");
     return iges_units(iges);
 }
 
@@ -431,11 +432,11 @@ void convert_or_refuse(char **arguments)
             convert(arguments[0], arguments[1], chord_mm, !strcmp(arguments[4], "y"), arguments[5]);
         }
     } catch (const Standard_Failure &e) {
-        refuse("Open CASCADE could not read the shapes of the file: %s", e.GetMessageString());
+        refuse("Open CASCADE could not read the shapes in the CAD file: %s", e.GetMessageString());
     } catch (const std::exception &) {
         throw;
     } catch (...) {
-        refuse("Open CASCADE could not read the shapes of the file");
+        refuse("Open CASCADE could not read the shapes in the CAD file: export the model again");
     }
 }
 

@@ -110,7 +110,7 @@ std::string external_name(preparing *p, const std::string &literal)
     if (entry != p->names.end())
         return entry->second;
     if (p->names.size() >= MOST_FILES)
-        refuse("the file refers to more than %zu other files", MOST_FILES);
+        refuse("the STEP file refers to more than %zu other files, the most that Plantcast supports", MOST_FILES);
     const std::string copy = "external_" + std::to_string(p->names.size()) + ".stp";
     p->names[known] = copy;
     p->out.externals[copy] = { named, !path.empty() };

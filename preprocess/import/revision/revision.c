@@ -399,7 +399,7 @@ static bool something_stays(const struct planning *p)
         removed += p->assets[i].removed;
     if (removed < p->input->plant->asset_count)
         return true;
-    snprintf(p->why, MODEL_WHY_BYTES, "%s: the imported models contain no asset of this plant", p->input->models[0].draft->file);
+    snprintf(p->why, MODEL_WHY_BYTES, "%s: the imported models contain none of the plant's assets", p->input->models[0].draft->file);
     return false;
 }
 

@@ -61,18 +61,19 @@ static enum file_state check(const struct cache_file *file, const char *magic, u
 {
     const struct cache_head *head = file->map;
     if (file->map_bytes < sizeof(*head))
-        return found(why, FILE_DAMAGED, "truncated: %zu bytes, but the header alone takes %zu", file->map_bytes, sizeof(*head));
+        return found(why, FILE_DAMAGED, "the file is truncated: %zu bytes, but the header alone takes %zu", file->map_bytes, sizeof(*head));
     if (memcmp(head->magic, magic, sizeof(head->magic)) != 0)
-        return found(why, FILE_OTHER, "of another version, or not a cache file of this kind (it does not begin with %.8s)", magic);
+        return found(why, FILE_OTHER, "the file is of another version or kind: it does not begin with %.8s", magic);
     if (head->key != key)
-        return found(why, FILE_OTHER, "made from other input (key %016" PRIx64 ", expected %016" PRIx64 ")", head->key, key);
+        return found(why, FILE_OTHER, "the file was made from other input (key %016" PRIx64 ", expected %016" PRIx64 ")", head->key, key);
     if (head->count != file->map_bytes - sizeof(*head))
-        return found(why, FILE_DAMAGED, "%s: %zu bytes, the header says %" PRIu64,
+        return found(why, FILE_DAMAGED, "%s: the file has %zu bytes, but its header says %" PRIu64,
                      head->count > file->map_bytes - sizeof(*head) ? "truncated" : "too long", file->map_bytes,
                      head->count + sizeof(*head));
     uint64_t sum = XXH3_64bits_withSeed(head + 1, head->count, key);
     if (sum != head->checksum)
-        return found(why, FILE_DAMAGED, "damaged: checksum %016" PRIx64 ", the header says %016" PRIx64, sum, head->checksum);
+        return found(why, FILE_DAMAGED, "the file is damaged: its checksum is %016" PRIx64 ", but its header says %016" PRIx64, sum,
+                     head->checksum);
     return FILE_GOOD;
 }
 
@@ -99,7 +100,7 @@ bool cache_file_open(struct cache_file *file, const char *path, const char *magi
 static bool is_good(enum file_state state, struct log *log, const char *path, const char *why)
 {
     if (state == FILE_DAMAGED)
-        log_warn(log, "cache file %s: %s; its contents are computed again", path, why);
+        log_warn(log, "cache file %s: %s; its contents are computed again, so there is nothing to do", path, why);
     return state == FILE_GOOD;
 }
 
@@ -116,7 +117,7 @@ static enum file_state map_compressed(struct cache_file *file, const char *path,
     if (state != FILE_GOOD || decompressed_size(file->bytes, file->count) != SIZE_MAX)
         return state;
     cache_file_close(file);
-    return found(why, FILE_DAMAGED, "damaged: its compressed parts do not have the sizes that they state");
+    return found(why, FILE_DAMAGED, "the file is damaged: its compressed parts do not have the sizes that they state");
 }
 
 /* Replaces the mapped content of the file by the decompressed content. */
@@ -127,7 +128,7 @@ static enum file_state decompress_file(struct cache_file *file, char *why)
     void *decompressed = decompress(file->bytes, bytes, &count);
     cache_file_close(file);
     if (!decompressed)
-        return found(why, FILE_DAMAGED, "its %zu compressed bytes are damaged, or memory ran out", bytes);
+        return found(why, FILE_DAMAGED, "the file's %zu compressed bytes are damaged, or memory ran out", bytes);
     *file = (struct cache_file){ .decompressed = decompressed, .bytes = decompressed, .count = count };
     return FILE_GOOD;
 }

@@ -132,7 +132,7 @@ static bool find_loader(const char *name, void *function, char *why)
     char reason[IMAGE_WHY_BYTES - 24];
     if (module_find(&images, name, function, reason, sizeof(reason)))
         return true;
-    snprintf(why, IMAGE_WHY_BYTES, "neither PNG nor JPEG: %s", reason);
+    snprintf(why, IMAGE_WHY_BYTES, "not a PNG or JPEG file: %s", reason);
     return false;
 }
 

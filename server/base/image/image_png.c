@@ -48,7 +48,7 @@ static bool read_all(png_structp png, png_infop info, struct image *image, size_
     int passes = png_set_interlace_handling(png);
     png_read_update_info(png, info);
     if (png_get_rowbytes(png, info) != 4 * (size_t)image->width_px)
-        png_error(png, "unexpected bytes per row");
+        png_error(png, "the PNG picture has another number of bytes in a row than its header states");
     for (int pass = 0; pass < passes; pass++)
         for (uint32_t y = 0; y < image->height_px; y++)
             png_read_row(png, image->rgba + 4 * (size_t)y * image->width_px, NULL);

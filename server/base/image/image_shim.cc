@@ -124,7 +124,7 @@ bool claim_good(const OIIO::ImageSpec &spec, const char *format, size_t size, ch
     /* refuses files too short for the size that they state; not WebP files, which store even large single-colour images in a
        few bytes */
     if (strcmp(format, "webp") != 0 && values > IMAGE_FREE_VALUES + uint64_t{ IMAGE_VALUES_PER_BYTE } * size)
-        return refuse(why, "%zu bytes cannot hold a picture of %d x %d pixels", size, spec.width, spec.height);
+        return refuse(why, "the picture file is truncated or damaged: %zu bytes cannot hold %d x %d pixels", size, spec.width, spec.height);
     return true;
 }
 
@@ -202,7 +202,7 @@ template <typename I, typename F> bool guarded(I *image, char *why, F read)
     } catch (const std::exception &e) {
         refuse(why, "%s", e.what());
     } catch (...) {
-        refuse(why, "the image library failed");
+        refuse(why, "the image library could not read the picture, and gave no reason");
     }
     mem_free(image->rgba);
     *image = {};

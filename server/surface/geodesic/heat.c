@@ -69,8 +69,8 @@ struct heat *heat_create(struct log *log, const struct intrinsic *in, const uint
     return heat;
 error:
     log_err(log, "cannot prepare the heat method for a surface of %zu points and %zu triangles: %s", in->point_count, in->tri_count,
-            heat->common.status == CHOLMOD_NOT_POSDEF ? "the equations cannot be solved (matrix not positive definite): "
-                                                        "check the asset's model for extremely thin triangles"
+            heat->common.status == CHOLMOD_NOT_POSDEF ? "the equations for the asset's surface cannot be solved: check its model for "
+                                                        "extremely thin triangles (matrix not positive definite)"
                                                       : "out of memory");
     heat_destroy(&heat);
     return NULL;

@@ -79,6 +79,7 @@ export const OPENINGS = [
 export const UNCUT = [
     ['a surface', [...box, ...opening('sheet', [point('a', -300, 0, 0), point('b', 300, 0, 0), ['edge', 'IFCPOLYLINE((#{a},#{b}))'],
         ['open', 'IFCARBITRARYOPENPROFILEDEF(.CURVE.,$,#{edge})'], ['sheet', 'IFCEXTRUDEDAREASOLID(#{open},#{frame},#{z},50.)']])],
-    'it encloses no space'],
-    ['without a shape', [...box, ['none', 'IFCPRODUCTDEFINITIONSHAPE($,$,())'], ...voids('none')], 'its shape is not built'],
+    'the opening encloses no space'],
+    ['without a shape', [...box, ['none', 'IFCPRODUCTDEFINITIONSHAPE($,$,())'], ...voids('none')],
+        'the shape of the opening cannot be built'],
 ];
