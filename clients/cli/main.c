@@ -48,7 +48,7 @@ static const struct cli_command {
     { "init", "set up the systemd service plantcastd@NAME with a certificate and first tokens", cmd_init, NULL },
     { "ready", "check whether a daemon serves pictures (exit status 0: yes)", NULL, cmd_ready },
     { "drain", "move all user sessions of a daemon on this machine to other daemons", cmd_drain, NULL },
-    { "standby", "begin or end standby maintenance, during which this core leads alone", cmd_standby, NULL },
+    { "standby", "begin or end maintenance, during which one core leads alone and no standby takes over", cmd_standby, NULL },
     { "reload", "make a daemon on this machine reload its plant file and tag list", cmd_reload, NULL },
     { "history", "import readings into the recorded history of a plant, or export recorded readings as CSV", cmd_history, NULL },
     { "backup", "back up a plant, or all files of a service plantcastd@NAME, also while the daemon runs", cmd_backup, NULL },

@@ -146,14 +146,14 @@ static bool take_box(struct box_walk *walk, int rule, const uint8_t *type, const
         name[i] = type[i] > ' ' && type[i] < 0x7f ? (char)type[i] : '?';
     const char *place = *parent ? parent : "the file";
     if (rule == RULES)
-        return FAIL("unexpected MP4 box %s in %s: the clip was changed, or not made by `plantcast clip --signed`", name, place);
+        return FAIL("the clip was changed, or not made by `plantcast clip --signed`: unexpected MP4 box %s in %s", name, place);
     if (walk->seen[rule])
-        return FAIL("MP4 box %s occurs twice in %s: the clip was changed", name, place);
+        return FAIL("the clip was changed after it was signed: MP4 box %s occurs twice in %s", name, place);
     walk->seen[rule] = true;
     if (memcmp(type, "avcC", 4) == 0 && !has_two_sets(content, count))
-        return FAIL("MP4 box avcC has more than one sequence parameter set or picture parameter set: the clip was changed");
+        return FAIL("the clip was changed after it was signed: MP4 box avcC has more than one sequence or picture parameter set");
     return !rules[rule].content || content_fits(walk, rules[rule].content, content, count) ||
-           FAIL("MP4 box %s has contents that Plantcast never writes: the clip was changed", name);
+           FAIL("the clip was changed after it was signed: MP4 box %s has contents that Plantcast never writes", name);
 }
 
 /* Reads the picture's size from the innermost box, avc1. All other boxes must have the same size. */
@@ -173,17 +173,17 @@ static bool take_boxes(struct box_walk *walk, const char *parent, const uint8_t 
     while (count >= HEAD) {
         uint64_t length = number(bytes, 4);
         if (length < HEAD || length > count)
-            return FAIL("an MP4 box in %s is damaged", parent);
+            return FAIL("the clip is damaged: a box within MP4 box %s has an invalid length", parent);
         int rule = find_rule(parent, bytes + 4);
         if (!take_box(walk, rule, bytes + 4, parent, bytes + HEAD, length - HEAD))
             return false;
         size_t children = rules[rule].children;
         if (children && (length < children || !take_boxes(walk, rules[rule].type, bytes + children, length - children)))
-            return length >= children ? false : FAIL("MP4 box %s is damaged", rules[rule].type);
+            return length >= children ? false : FAIL("the clip is damaged: MP4 box %s is too short", rules[rule].type);
         bytes += length;
         count -= length;
     }
-    return count == 0 || FAIL("bytes follow the last MP4 box in %s", parent);
+    return count == 0 || FAIL("the clip is damaged: bytes follow the last box within MP4 box %s", parent);
 }
 
 static bool take_moov(struct box_walk *walk, FILE *file, uint64_t count)
@@ -195,7 +195,7 @@ static bool take_moov(struct box_walk *walk, FILE *file, uint64_t count)
         learn_size(walk, moov, count);
         good = take_boxes(walk, "moov", moov, count);
     } else {
-        good = FAIL("MP4 box moov is truncated or too long");
+        good = FAIL("the clip is damaged: MP4 box moov is truncated or too long");
     }
     mem_free(moov);
     return good;
@@ -229,7 +229,7 @@ static bool has_all(const struct box_walk *walk)
     char *why = walk->why;
     for (int i = 0; i < RULES; i++)
         if (rules[i].required && !walk->seen[i])
-            return FAIL("MP4 box %s is missing", rules[i].type);
+            return FAIL("the clip is damaged, or not made by `plantcast clip --signed`: MP4 box %s is missing", rules[i].type);
     return true;
 }
 
@@ -277,9 +277,10 @@ static bool is_plain_message(const uint8_t *unit, size_t count, char why[FILM_BO
         last = unit[i];
     }
     if (type != MESSAGE_TEXT && type != MESSAGE_RECOVERY)
-        return FAIL("unexpected H.264 message (SEI) of type %u, which Plantcast's clips do not have: the clip was changed", type);
+        return FAIL("the clip was changed after it was signed: it has an H.264 message (SEI) of type %u, which Plantcast never writes",
+                    type);
     return (content == length + 1 && last == 0x80) ||
-           FAIL("a part of the video (NAL unit) has more than one H.264 message (SEI): the clip was changed");
+           FAIL("the clip was changed after it was signed: an H.264 NAL unit has more than one message (SEI)");
 }
 
 bool film_units_plain(const uint8_t *sample, size_t count, char why[FILM_BOXES_WHY_BYTES])
@@ -287,16 +288,14 @@ bool film_units_plain(const uint8_t *sample, size_t count, char why[FILM_BOXES_W
     while (count > 4) {
         uint64_t length = number(sample, 4);
         if (length < 1 || length > count - 4)
-            return FAIL("a frame is damaged");
+            return FAIL("the clip is damaged: an H.264 NAL unit has an invalid length");
         int type = sample[4] & 31;
         if (type == UNIT_MESSAGE && !is_plain_message(sample + 4, length, why))
             return false;
         if (type != UNIT_SLICE && type != UNIT_SLICE_OF_KEY && type != UNIT_MESSAGE)
-            return FAIL("unexpected part of the video (H.264 NAL unit) of type %d: the clip was changed, or not made by "
-                        "`plantcast clip --signed`",
-                        type);
+            return FAIL("the clip was changed, or not made by `plantcast clip --signed`: unexpected H.264 NAL unit of type %d", type);
         sample += 4 + length;
         count -= 4 + length;
     }
-    return count == 0 || FAIL("a frame is damaged");
+    return count == 0 || FAIL("the clip is damaged: an H.264 NAL unit has an invalid length");
 }

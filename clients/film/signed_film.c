@@ -99,7 +99,7 @@ static bool read_statements(struct film_reader *reader)
     const AVDictionaryEntry *entry = av_dict_get(reader->format->metadata, FILM_KEY, NULL, AV_DICT_MATCH_CASE);
     size_t length = entry ? strlen(entry->value) : 0;
     if (length < 4 || length % 4 || length > 2 * MAX_BYTES)
-        return FAIL("the clip has no signed statements, or is damaged: was the clip made by `plantcast clip --signed`?");
+        return FAIL("the clip has no signed statements: the clip is damaged, or not made by `plantcast clip --signed`");
     uint8_t *bytes = mem_array(length, 1);
     int count = EVP_DecodeBlock(bytes, (const unsigned char *)entry->value, (int)length);
     count -= (entry->value[length - 1] == '=') + (entry->value[length - 2] == '=');
@@ -117,7 +117,7 @@ static bool read_statements(struct film_reader *reader)
     reader->statements = status == Z_STREAM_END ? json_loadb(text.at, text.length, JSON_REJECT_DUPLICATES, NULL) : NULL;
     text_finish(&text);
     mem_free(bytes);
-    return json_is_array(reader->statements) || FAIL("the clip's signed statements cannot be read");
+    return json_is_array(reader->statements) || FAIL("the clip is damaged: its signed statements cannot be read");
 }
 
 /* Opens a film and checks that it has one stream that every player shows unchanged. The decoder takes the colour description
@@ -129,23 +129,24 @@ static bool open_film(struct film_reader *reader, const char *path)
     if (!film_boxes_plain(path, &reader->size, reader->why))
         return false;
     if (avformat_open_input(&reader->format, path, NULL, NULL) < 0 || avformat_find_stream_info(reader->format, NULL) < 0)
-        return FAIL("the clip is incomplete");
+        return FAIL("the clip is damaged or incomplete: libavformat cannot read its streams");
     const AVStream *stream = reader->format->nb_streams == 1 ? reader->format->streams[0] : NULL;
     if (!stream || stream->codecpar->codec_id != AV_CODEC_ID_H264)
-        return FAIL("expected one H.264 stream and nothing else in the file");
+        return FAIL("the clip was not made by `plantcast clip --signed`: expected one H.264 stream and nothing else in the file");
     const AVCodec *decoder = avcodec_find_decoder(AV_CODEC_ID_H264);
     reader->codec = decoder ? avcodec_alloc_context3(decoder) : NULL;
     reader->packet = av_packet_alloc();
     reader->frame = av_frame_alloc();
     if (!reader->codec || !reader->packet || !reader->frame || avcodec_parameters_to_context(reader->codec, stream->codecpar) < 0)
-        return FAIL("libavcodec on this machine cannot decode the clip");
+        return FAIL("libavcodec on this machine cannot decode H.264, so the clip cannot be verified");
     reader->codec->thread_count = 1;
     reader->codec->color_primaries = AVCOL_PRI_UNSPECIFIED;
     reader->codec->color_trc = AVCOL_TRC_UNSPECIFIED;
     reader->codec->colorspace = AVCOL_SPC_UNSPECIFIED;
     reader->codec->color_range = AVCOL_RANGE_UNSPECIFIED;
     reader->codec->err_recognition = AV_EF_EXPLODE | AV_EF_BITSTREAM | AV_EF_BUFFER | AV_EF_CRCCHECK;
-    return (avcodec_open2(reader->codec, decoder, NULL) >= 0 || FAIL("libavcodec on this machine cannot decode the clip")) &&
+    return (avcodec_open2(reader->codec, decoder, NULL) >= 0 ||
+            FAIL("libavcodec on this machine cannot decode H.264, so the clip cannot be verified")) &&
            read_statements(reader);
 }
 
@@ -168,17 +169,17 @@ static bool next_picture(struct film_reader *reader)
         if (status == AVERROR_EOF)
             return false;
         if (status != AVERROR(EAGAIN))
-            return FAIL("a frame cannot be decoded");
+            return FAIL("the clip is damaged: a frame cannot be decoded");
         status = reader->ended ? AVERROR_EOF : av_read_frame(reader->format, reader->packet);
         if (status < 0 && status != AVERROR_EOF)
-            return FAIL("the clip cannot be read to its end");
+            return FAIL("the clip is damaged: it cannot be read to its end");
         reader->ended = status < 0;
         if (!reader->ended && !film_units_plain(reader->packet->data, (size_t)reader->packet->size, reader->why))
             return false;
         status = avcodec_send_packet(reader->codec, reader->ended ? NULL : reader->packet);
         av_packet_unref(reader->packet);
         if (status < 0 && status != AVERROR_EOF)
-            return FAIL("a frame cannot be decoded");
+            return FAIL("the clip is damaged: a frame cannot be decoded");
     }
 }
 
@@ -188,17 +189,17 @@ static bool is_plain_picture(struct film_reader *reader)
 {
     const AVFrame *frame = reader->frame;
     if (frame->format != AV_PIX_FMT_GBRP || frame->crop_left || frame->crop_right || frame->crop_top || frame->crop_bottom)
-        return FAIL("the frame is not encoded in the way that `plantcast clip --signed` encodes frames");
+        return FAIL("the clip was changed, or not made by `plantcast clip --signed`: this frame is encoded in another way");
     if (frame->color_primaries != AVCOL_PRI_BT709 || frame->color_trc != AVCOL_TRC_IEC61966_2_1 || frame->colorspace != AVCOL_SPC_RGB ||
         frame->color_range != AVCOL_RANGE_JPEG)
-        return FAIL("the H.264 stream (VUI) describes other colours than those that Plantcast writes: primaries %d, transfer %d, matrix "
-                    "%d, range %d",
+        return FAIL("the clip was changed: its H.264 stream (VUI) states other colours than Plantcast writes: primaries %d, transfer %d, "
+                    "matrix %d, range %d",
                     (int)frame->color_primaries, (int)frame->color_trc, (int)frame->colorspace, (int)frame->color_range);
     if (frame->sample_aspect_ratio.num != 0 && av_cmp_q(frame->sample_aspect_ratio, (AVRational){ 1, 1 }) != 0)
-        return FAIL("the H.264 stream (VUI) states that pixels are not square");
+        return FAIL("the clip was changed: its H.264 stream (VUI) states that pixels are not square");
     return (frame->width == reader->size.width_px && frame->height == reader->size.height_px) ||
-           FAIL("the size in MP4 box avc1, %dx%d, differs from the frames' size, %dx%d", reader->size.width_px, reader->size.height_px,
-                frame->width, frame->height);
+           FAIL("the clip was changed: MP4 box avc1 states %dx%d pixels, but the frames have %dx%d", reader->size.width_px,
+                reader->size.height_px, frame->width, frame->height);
 }
 
 /* Returns the picture's pixels as red, green, blue (mem_free), or NULL if its colours or pixels are not described as
@@ -254,7 +255,7 @@ static bool takes_view(struct film_check *check, const json_t *statement)
     if (last && same_view(query, last))
         return true;
     if (last && !check->tour)
-        return FAIL("the view differs from that of the first frame (for a clip of a tour, add --tour)");
+        return FAIL("this frame shows another view than the first frame: for a clip of a tour, add --tour");
     json_array_append_new(check->views, json_pack("{s:O,s:O}", "query", query, "at_us", json_object_get(statement, "at_us")));
     return true;
 }
@@ -267,18 +268,19 @@ static bool follows(struct film_check *check, const json_t *statement)
     struct film_reader *reader = &check->reader;
     int64_t at_us = json_integer_value(json_object_get(statement, "at_us")), pts = reader->frame->pts;
     if (at_us == 0)
-        return FAIL("the frame shows live readings, but all frames of a clip must show recorded readings");
+        return FAIL("the frame shows live readings, but `plantcast clip` makes only frames of recorded readings: the clip was changed");
     for (size_t i = 0; i < sizeof(same) / sizeof(*same) && check->first; i++)
         if (!json_equal(json_object_get(statement, same[i]), json_object_get(check->first, same[i])))
-            return FAIL("the frame's signed field '%s' differs from that of the first frame: the frames are not of one clip",
-                        same[i]);
+            return FAIL(
+                "the frame's signed statement has another value of '%s' than the first frame's: the frames are from different clips",
+                same[i]);
     if (!takes_view(check, statement))
         return false;
     int64_t step_us = at_us - check->at_us, pts_step = pts - check->pts;
     if (check->count > 0 && (step_us <= 0 || (check->step_us && llabs(step_us - check->step_us) > 1)))
-        return FAIL("the previous frame is missing, or frames were moved or inserted");
+        return FAIL("the clip was changed: the frame before this one is missing, or frames were moved or inserted");
     if (check->count > 0 && (pts_step <= 0 || (check->pts_step && pts_step != check->pts_step)))
-        return FAIL("the frame's duration differs from that of the other frames");
+        return FAIL("the clip was changed: this frame is shown for another time than the other frames");
     check->step_us = check->count > 0 ? step_us : 0;
     check->pts_step = check->count > 0 ? pts_step : 0;
     check->at_us = at_us;
@@ -293,7 +295,7 @@ static bool verify_picture(struct film_check *check)
     const char *text = json_string_value(json_array_get(pair, 0)), *signature = json_string_value(json_array_get(pair, 1));
     uint8_t *rgb = pixels_of(reader);
     json_t *statement = NULL;
-    bool good = rgb && ((text && signature) || FAIL("the frame has no signed statement"));
+    bool good = rgb && ((text && signature) || FAIL("the clip was changed: this frame has no signed statement"));
     good = good && (statement = signed_statement_verify(check->key, text, strlen(text), signature, reader->why));
     good = good && signed_statement_has_pixels(statement, rgb, reader->frame->width, reader->frame->height, reader->why);
     good = good && follows(check, statement);
@@ -346,8 +348,9 @@ int film_verify(const struct signing_key *key, const char *path, const struct re
     }
     good = good && !*reader->why;
     if (good && check.count != json_array_size(reader->statements))
-        good = FAIL("the clip has %zu frames but signed statements for %zu frames", check.count, json_array_size(reader->statements));
-    good = good && (check.count > 0 || FAIL("the clip has no frame"));
+        good = FAIL("the clip was changed: it has %zu frames, but signed statements for %zu frames", check.count,
+                    json_array_size(reader->statements));
+    good = good && (check.count > 0 || FAIL("the clip has no frame, so there is nothing to verify"));
     if (good)
         print_film(&check, path);
     else if (opened)

@@ -58,7 +58,7 @@ static bool open_codec(struct video *video, int width_px, int height_px, double 
     const char *name = video->lossless ? "libx264rgb" : "libx264";
     const AVCodec *library = avcodec_find_encoder_by_name(name);
     if (!library) {
-        fprintf(stderr, "plantcast: %s: libavcodec on this machine has no %s\n", video->path, name);
+        fprintf(stderr, "plantcast: %s: libavcodec on this machine lacks the H.264 encoder %s, which clips need\n", video->path, name);
         return false;
     }
     video->codec = avcodec_alloc_context3(library);

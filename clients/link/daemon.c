@@ -22,7 +22,8 @@ static bool read_token(struct daemon_access *access)
     if (good)
         snprintf(access->authorization, sizeof(access->authorization), "Bearer %.*s", (int)n, text);
     else
-        fprintf(stderr, "plantcast: %s: %s\n", access->token_path, error ? strerror(error) : "the first line of the file is not a token");
+        fprintf(stderr, "plantcast: %s: %s\n", access->token_path,
+                error ? strerror(error) : "the first line of this file must be a token (see `plantcast token`)");
     secret_forget(text);
     return good;
 }
@@ -200,7 +201,7 @@ int daemon_get(const struct daemon_url *url, const char *path, struct text *body
         lws_service(context, 0);
     if (!exchange.status)
         fprintf(stderr, "plantcast: http%s://%s:%d%s: %s%s\n", url->tls ? "s" : "", url->host, url->port, whole,
-                exchange.why[0] ? exchange.why : "the server does not answer",
+                exchange.why[0] ? exchange.why : "the server at this address does not answer",
                 strstr(exchange.why, "SSL") ? "; pass the certificate of the daemon or of its authority with --ca FILE" : "");
     if (context)
         lws_context_destroy(context);

@@ -43,7 +43,8 @@ bool branch_begin(struct video_branch *branch)
     branch->pipeline = gst_parse_launch(text, &error);
     g_free(text);
     if (error) {
-        fprintf(stderr, "plantcast-video: %s: %s (package gstreamer1.0-plugins-bad)\n", branch->name, error->message);
+        fprintf(stderr, "plantcast-video: the output %s cannot start: %s; install the package gstreamer1.0-plugins-bad\n", branch->name,
+                error->message);
         g_clear_error(&error);
         gst_clear_object(&branch->pipeline);
         return false;

@@ -41,7 +41,7 @@ struct video_encoder *encoder_create(const struct video_options *options, struct
     GstElement *pipeline = gst_parse_launch(text, &error);
     g_free(text);
     if (error) {
-        fprintf(stderr, "plantcast-video: H.264: %s (package gstreamer1.0-plugins-ugly)\n", error->message);
+        fprintf(stderr, "plantcast-video: cannot encode H.264: %s; install the package gstreamer1.0-plugins-ugly\n", error->message);
         g_clear_error(&error);
         gst_clear_object(&pipeline);
         return NULL;

@@ -45,13 +45,18 @@ static void tell_metrics(struct video_program *program)
     GString *out = g_string_new("");
     struct outputs_counts counts;
     outputs_count(program->outputs, &counts);
-    add_metric(out, "plantcast_video_frames_total", "counter", "Frames encoded; each frame is encoded once for all viewers.", counts.units);
+    add_metric(out, "plantcast_video_frames_total", "counter", "Video frames encoded; each frame is encoded once for all viewers.",
+               counts.units);
     add_metric(out, "plantcast_video_key_frames_total", "counter", "Key frames encoded.", counts.key_units);
     add_metric(out, "plantcast_video_bytes_total", "counter", "Bytes of encoded frames.", counts.bytes);
-    add_metric(out, "plantcast_video_late_frames_total", "counter", "Frames skipped because drawing or encoding was late.", program->late);
-    add_metric(out, "plantcast_video_dropped_frames_total", "counter", "Frames dropped because an output was not ready.", counts.dropped);
-    add_metric(out, "plantcast_video_pictures_total", "counter", "Pictures received from the server.", source_pictures(program->source));
-    add_metric(out, "plantcast_video_card", "gauge", "1 while a message card is shown instead of the picture.", program->card);
+    add_metric(out, "plantcast_video_late_frames_total", "counter", "Video frames skipped because drawing or encoding was late.",
+               program->late);
+    add_metric(out, "plantcast_video_dropped_frames_total", "counter",
+               "Video frames dropped because an output (RTSP or SRT) was not ready.", counts.dropped);
+    add_metric(out, "plantcast_video_pictures_total", "counter", "Pictures received from the plant's daemon.",
+               source_pictures(program->source));
+    add_metric(out, "plantcast_video_card", "gauge",
+               "1 while the video shows a message instead of the plant, for example because the daemon does not answer.", program->card);
     g_string_append_printf(out,
                            "# HELP plantcast_video_readers Connected viewers.\n# TYPE plantcast_video_readers gauge\n"
                            "plantcast_video_readers{output=\"rtsp\"} %u\nplantcast_video_readers{output=\"srt\"} %d\n",

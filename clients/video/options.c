@@ -155,15 +155,18 @@ int options_read(struct video_options *options, int *argc, char ***argv)
     const GOptionEntry entries[] = {
         { "view", 0, 0, G_OPTION_ARG_STRING, &options->view, "id of the view to show: a view in the plant file, or one saved on the page",
           "ID" },
-        { "query", 0, 0, G_OPTION_ARG_STRING, &options->query, "view to show, as query parameters of /snapshot.png: "
-                                                               "group=temperature&camera=...",
+        { "query", 0, 0, G_OPTION_ARG_STRING, &options->query,
+          "view to show, as query parameters of /snapshot.png: "
+          "group=temperature&camera=...",
           "PARAMETERS" },
         { "language", 0, 0, G_OPTION_ARG_STRING, &options->language, "language of all text in the picture: en, ko or de (default: en)",
           "LANGUAGE" },
         { "token-file", 0, 0, G_OPTION_ARG_FILENAME, &options->token_path,
           "file whose first line is a token for the daemon, made by `plantcast token`", "FILE" },
-        { "ca", 0, 0, G_OPTION_ARG_FILENAME, &options->ca_path, "file of certificates (PEM) to trust instead of the system's "
-                                                                "certificates", "FILE" },
+        { "ca", 0, 0, G_OPTION_ARG_FILENAME, &options->ca_path,
+          "file of certificates (PEM) to trust instead of the system's "
+          "certificates",
+          "FILE" },
         { "size", 0, 0, G_OPTION_ARG_STRING, &size, "width and height of the video in pixels (default: 1280x720)", "WxH" },
         { "fps", 0, 0, G_OPTION_ARG_INT, &options->fps, "frames per second, 5 to 30, even while nothing changes (default: 10)", "N" },
         { "kbps", 0, 0, G_OPTION_ARG_INT, &options->kbps, "maximum bit rate of the video in kbit/s (default: 4000)", "N" },
@@ -176,13 +179,11 @@ int options_read(struct video_options *options, int *argc, char ***argv)
         { "http", 0, 0, G_OPTION_ARG_INT, &options->http_port, "TCP port of 127.0.0.1 on which to serve /metrics", "PORT" },
         { "readers-file", 0, 0, G_OPTION_ARG_FILENAME, &readers_path, "file whose first line is USER:PASSWORD, which viewers must give",
           "FILE" },
-        { "open-readers", 0, 0, G_OPTION_ARG_NONE, &open_readers, "require no password: anyone who can reach the address can watch",
-          NULL },
+        { "open-readers", 0, 0, G_OPTION_ARG_NONE, &open_readers, "require no password: anyone who can reach the address can watch", NULL },
         { "most-readers", 0, 0, G_OPTION_ARG_INT, &options->most_readers,
           "maximum number of simultaneous viewers, for RTSP and for SRT each (default: 64)", "N" },
-        { "time-code", 0, 0, G_OPTION_ARG_NONE, &time_code, "add a row of blocks below the picture that encodes the picture's time for "
-                                                            "programs",
-          NULL },
+        { "time-code", 0, 0, G_OPTION_ARG_NONE, &time_code,
+          "add a row of blocks below the picture that encodes the picture's time, to be read by programs", NULL },
         { "version", 0, 0, G_OPTION_ARG_NONE, &version, "print the version", NULL },
         { NULL, 0, 0, G_OPTION_ARG_NONE, NULL, NULL, NULL }
     };

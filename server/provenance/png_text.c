@@ -132,9 +132,9 @@ static bool is_plain_header(const struct png_chunk *chunk, char why[PNG_PLAIN_WH
     static const uint8_t format[] = { 8, 2, 0, 0, 0 };
     bool is_header = memcmp(chunk->type, "IHDR", 4) == 0 && chunk->length == 13;
     if (!is_header)
-        return FAIL("the first chunk of the PNG file is not IHDR");
+        return FAIL("this is not a PNG picture of Plantcast: the first chunk is not IHDR");
     return memcmp(chunk->data + 8, format, sizeof(format)) == 0 ||
-           FAIL("PNG chunk IHDR has another format than 8 bits of red, green and blue");
+           FAIL("this is not a picture signed by Plantcast: the PNG file has another format than 8 bits of red, green and blue");
 }
 
 /* Returns the index of the chunk's type in `plain`, the table of chunk types that our writer emits; PLAIN_CHUNKS: not in the table. */
@@ -159,12 +159,16 @@ static bool takes_plain_chunk(const struct png_chunk *chunk, int *next, char why
                     printable(chunk->type[1]), printable(chunk->type[2]), printable(chunk->type[3]));
     bool again = row + 1 == *next && plain[row].repeats;
     if (row < *next && !again)
-        return FAIL("PNG chunk %.4s occurs twice, or in another order than in Plantcast's pictures", plain[row].type);
+        return FAIL("the picture was changed, or not signed by Plantcast: PNG chunk %.4s occurs twice or in an unusual place",
+                    plain[row].type);
     for (int i = *next; i < row; i++)
         if (plain[i].required)
-            return FAIL("PNG chunk %.4s is missing, or in another order than in Plantcast's pictures", plain[i].type);
+            return FAIL("the picture was changed, or not signed by Plantcast: PNG chunk %.4s is missing or in an unusual place",
+                        plain[i].type);
     if (plain[row].bytes && (chunk->length != plain[row].length || memcmp(chunk->data, plain[row].bytes, chunk->length) != 0))
-        return FAIL("PNG chunk %.4s differs from the same chunk of Plantcast's pictures", plain[row].type);
+        return FAIL(
+            "the picture was changed, or not signed by Plantcast: the contents of PNG chunk %.4s differ from those that Plantcast writes",
+            plain[row].type);
     *next = row + 1;
     return true;
 }
@@ -175,22 +179,22 @@ bool png_is_plain(const uint8_t *png, size_t count, const char *const *keywords,
     size_t at = SIGNATURE;
     int texts = 0, next = 0;
     if (!is_png(png, count) || !next_chunk(png, count, &at, &chunk))
-        return FAIL("the PNG file is incomplete");
+        return FAIL("the picture is damaged: the PNG file is incomplete");
     if (!is_plain_header(&chunk, why))
         return false;
     while (next_chunk(png, count, &at, &chunk)) {
         bool is_text = memcmp(chunk.type, "zTXt", 4) == 0;
         if (is_text && (texts == keyword_count || next > 0 || !has_keyword(chunk.data, chunk.length, keywords[texts])))
-            return FAIL("PNG chunk zTXt occurs twice, or in another order than in Plantcast's pictures");
+            return FAIL("the picture was changed, or not signed by Plantcast: PNG chunk zTXt occurs twice or in an unusual place");
         texts += is_text;
         if (!is_text && texts < keyword_count)
-            return FAIL("the PNG file has no text chunk %s directly after its header", keywords[texts]);
+            return FAIL("the picture is not signed: the PNG file has no text chunk %s directly after its header", keywords[texts]);
         if (!is_text && !takes_plain_chunk(&chunk, &next, why))
             return false;
         if (next == PLAIN_CHUNKS)
-            return at == count || FAIL("the PNG file has %zu bytes after its last chunk", count - at);
+            return at == count || FAIL("the picture was changed: the PNG file has %zu bytes after its last chunk", count - at);
     }
-    return FAIL("the PNG file is truncated or damaged");
+    return FAIL("the picture is damaged: the PNG file is truncated or has wrong checksums");
 }
 
 char *png_text_find(const uint8_t *png, size_t count, const char *keyword, size_t max_bytes, size_t *out_length)

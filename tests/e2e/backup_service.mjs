@@ -176,7 +176,7 @@ test('a wrong key, a damaged file and a newer version are refused by name, and t
     writeFileSync(list, text.replace(/"plantcast": ".*"/, '"plantcast": "9.0.0"'));
     refused('newer', /made by Plantcast 9\.0\.0: install version 9\.0\.0 or later/, '--identity /root/key');
     writeFileSync(list, text.replace('"version": 1', '"version": 2'));
-    refused('newer', /a version that this program cannot read/);
+    refused('newer', /another version of Plantcast wrote it/);
     refused('nothing', /has no backup\.json/);
     third.write('/etc/plantcast/mail.password', 'of another plant');
     const taken = third.run('plantcast restore /root/a --identity /root/key');

@@ -30,7 +30,7 @@ static int verify(const char *path, const struct audit_chain *known)
     struct audit_report report;
     audit_file_verify(path, known, &report);
     if (report.good)
-        printf("%s: good: lines %" PRIu64 " to %" PRIu64 " in %zu file%s%s\n"
+        printf("%s: unaltered: lines %" PRIu64 " to %" PRIu64 " in %zu file%s%s\n"
                "last line and its hash: %" PRIu64 ":%s\n",
                path, report.first_seq, report.end.seq, report.files, report.files == 1 ? "" : "s",
                report.first_seq > 1 ? "; earlier audit lines are not in these files" : "", report.end.seq, report.end.hash);

@@ -285,7 +285,7 @@ static json_t *read_manifest(const char *folder)
     bool good =
         json_integer_value(json_object_get(manifest, "version")) == MANIFEST_VERSION && json_is_array(json_object_get(manifest, "files"));
     if (!good)
-        say(path, text ? "not the file list of a backup, or a version that this program cannot read" : strerror(errno));
+        say(path, text ? "this file is not the file list of a backup, or another version of Plantcast wrote it" : strerror(errno));
     good = good && is_known_version(path, json_string_value(json_object_get(manifest, "plantcast")));
     if (!good && manifest) {
         json_decref(manifest);
@@ -404,7 +404,7 @@ static bool restore(struct backup_job *job, const char *plant_path)
     bool good = history && each_file(job, plant_path, history, tags, false);
     good = good && make_folder(history) && each_file(job, plant_path, history, tags, true);
     if (good)
-        printf("%s: plant file restored from the backup of %s; the history is in %s\n", plant_path,
+        printf("%s: this plant file was restored from the backup of %s; the history is in %s\n", plant_path,
                json_string_value(json_object_get(manifest, "made")), history);
     mem_free(history);
     json_decref(manifest);
@@ -435,7 +435,7 @@ static bool each_restored(struct backup_job *job, const char *plant_path, const 
         long long bytes;
         bool same = copy_hash(job->log, path, hash, &bytes) && !strcmp(hash, expected);
         if (!same)
-            say(path, "this restored copy differs from the file in the backup");
+            say(path, "this restored copy differs from the file in the backup: the backup is unusable, so make a new one");
         good = same && (!is_database(name) || copy_database(job->log, path, copy)) && good;
         unlink(copy);
         mem_free(copy);

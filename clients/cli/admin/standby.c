@@ -49,7 +49,7 @@ int cmd_standby(int argc, char **argv)
     int error = access(folder, W_OK) != 0 ? errno : begins ? -atomic_file_put(path, text, strlen(text)) : unlink(path) != 0 ? errno : 0;
     int code = error && !(ends && error == ENOENT && access(folder, W_OK) == 0) ? fail(error == ENOENT ? folder : path, error) : 0;
     if (!code)
-        printf("standby: %s: the core applies this mode within 1 s and logs the change\n", argv[1]);
+        printf("standby mode `%s`: the core applies this mode within 1 s and logs the change\n", argv[1]);
     mem_free(path);
     mem_free(folder);
     return code;

@@ -107,7 +107,7 @@ static char *read_file(const char *path, bool may_be_new)
     if (!fault && fd < 0 && errno == ENOENT && may_be_new)
         return mem_strdup("");
     if (!fault && fd < 0)
-        fault = errno == ELOOP ? "it is a symbolic link" : strerror(errno);
+        fault = errno == ELOOP ? "the token file is a symbolic link: give the path of the file itself" : strerror(errno);
     if (!fault)
         fault = fstat(fd, &st) == 0 ? file_fault(&st) : strerror(errno);
     if (fault)
@@ -263,7 +263,7 @@ int cmd_token(int argc, char **argv)
         }
         if (!take_option(option, &holder)) {
             if (option != '?')
-                fprintf(stderr, "plantcast: token: '%s' is not a valid option value: see plantcast token --help\n", optarg);
+                fprintf(stderr, "plantcast token: an option has the invalid value '%s': see plantcast token --help\n", optarg);
             print_usage(stderr);
             return 2;
         }
@@ -271,7 +271,7 @@ int cmd_token(int argc, char **argv)
     const char *what = argv[optind], *path = what ? argv[optind + 1] : NULL;
     int count = argc - optind;
     if ((holder.views[0] || holder.display) && (holder.role != ROLE_VIEWER || (holder.views[0] && holder.display))) {
-        fprintf(stderr, "plantcast: token: --views and --display need --role viewer, and cannot be combined\n");
+        fprintf(stderr, "plantcast token: --views and --display need --role viewer, and cannot be combined\n");
         return 2;
     }
     if (count == 2 && !strcmp(what, "add") && holder.role != ROLE_NOBODY && holder.name[0])

@@ -31,12 +31,12 @@ static const char *wrong_with(const char *url)
 {
     const char *host = strstr(url, "://");
     if (strncasecmp(url, "http://", 7) != 0 && strncasecmp(url, "https://", 8) != 0)
-        return "expected an address that begins with https:// or http://";
+        return "the plant's address must begin with https:// or http://";
     size_t length = strcspn(host + 3, "/?#");
     if (length == 0)
-        return "the address contains no host name";
+        return "the plant's address contains no host name";
     if (memchr(host + 3, '@', length))
-        return "expected an address without a password: write a token to a file, and give the file's path in `token_file`";
+        return "the plant's address must not contain a password: write a token to a file, and give the file's path in `token_file`";
     if (strpbrk(url, "?# \t\"<>"))
         return "expected the address of the plant's page, without ?, # and white space";
     return NULL;

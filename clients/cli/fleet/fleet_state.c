@@ -147,8 +147,8 @@ WHILE_IT_ANSWERS(recorded)
 
 void fleet_metrics(const struct fleet_file *file, const struct fleet_plant_state *states, struct text *out)
 {
-    add_metric(file, states, out, "plantcast_fleet_up", "gauge", "1 while the plant's server answers, else 0.", up_of);
-    add_metric(file, states, out, "plantcast_fleet_polls_total", "counter", "Total number of requests sent to the plant's server.",
+    add_metric(file, states, out, "plantcast_fleet_up", "gauge", "1 while the plant's daemon answers, else 0.", up_of);
+    add_metric(file, states, out, "plantcast_fleet_polls_total", "counter", "Total number of requests sent to the plant's daemon.",
                asked_of);
     text_add(out,
              "# HELP plantcast_fleet_alarms Alarms in the alarm list of the plant, by priority.\n# TYPE plantcast_fleet_alarms gauge\n");
@@ -157,13 +157,14 @@ void fleet_metrics(const struct fleet_file *file, const struct fleet_plant_state
             text_add(out, "plantcast_fleet_alarms{plant=\"%s\",priority=\"%d\"} %lld\n", file->plants[i].id, k + 1,
                      (long long)states[i].state.alarms[k]);
     add_metric(file, states, out, "plantcast_fleet_unacknowledged", "gauge", "Unacknowledged alarms.", unacknowledged_of);
-    add_metric(file, states, out, "plantcast_fleet_links_down", "gauge", "Sources (field devices) without a connection.", links_down_of);
+    add_metric(file, states, out, "plantcast_fleet_links_down", "gauge",
+               "Number of the plant's sources (field devices) without a connection.", links_down_of);
     add_metric(file, states, out, "plantcast_fleet_certificate_expiry_timestamp_seconds", "gauge",
-               "Expiry time of the server's certificate, in seconds since 1970; 0: no certificate.", certificate_s_of);
+               "Expiry time of the plant's TLS certificate, in seconds since 1970; 0: no certificate.", certificate_s_of);
     add_metric(file, states, out, "plantcast_fleet_backup_timestamp_seconds", "gauge",
                "Time of the plant's last backup, in seconds since 1970; 0: unknown.", backup_s_of);
     add_metric(file, states, out, "plantcast_fleet_free_bytes", "gauge", "Free disk space in bytes for the plant's history.",
                free_bytes_of);
-    add_metric(file, states, out, "plantcast_fleet_recorded", "gauge", "1 while the server can write history and alarms, else 0.",
+    add_metric(file, states, out, "plantcast_fleet_recorded", "gauge", "1 while the plant's daemon can write history and alarms, else 0.",
                recorded_of);
 }

@@ -106,7 +106,8 @@ static bool add_colormaps(struct offline_renderer *offline, const struct snapsho
             continue;
         bool read = image_ramp(path, rgb, why);
         if (!read || !colormap_add(offline->plant, path, (const uint8_t(*)[3])rgb)) {
-            fprintf(stderr, "plantcast: --colormap: %s: %s\n", path, read ? "the plant already has 16 colour maps, the maximum" : why);
+            fprintf(stderr, "plantcast: --colormap: %s: %s\n", path,
+                    read ? "this colour map cannot be added, because the plant already has 16, the maximum" : why);
             return false;
         }
     }

@@ -32,7 +32,8 @@ static bool same_configuration(const json_t *statement, const struct plant *plan
     const char *then = json_string_value(json_object_get(statement, "configuration"));
     if (then && !strcmp(then, plant->files.hash))
         return true;
-    printf("  DIFFERS: configuration: %s was %s, now %s\n", plant->files.path, then ? then : "?", plant->files.hash);
+    printf("  DIFFERS: the configuration hash of %s was %s when the picture was drawn, now %s\n", plant->files.path, then ? then : "?",
+           plant->files.hash);
     return false;
 }
 
@@ -49,7 +50,7 @@ static bool same_assets(const json_t *statement, const struct scene *scene)
                    scene->plant->assets[i].id, then ? then : "missing", *checksum ? checksum : "missing");
     }
     if (others > 1)
-        printf("  DIFFERS: checksums of the prepared files of %zu more assets\n", others - 1);
+        printf("  DIFFERS: the checksums of the prepared files of %zu more assets have changed since the picture was drawn\n", others - 1);
     return others == 0;
 }
 
@@ -84,9 +85,9 @@ static bool same_as_recorded(struct offline_renderer *offline, const struct redr
             first = i + 1;
     }
     snapshot_destroy(&then);
-    printf("  %s%zu of %zu readings agree with the recorded history\n", same == count ? "" : "DIFFERS: ", same, count);
+    printf("  %s%zu of %zu readings in the picture agree with the recorded history\n", same == count ? "" : "DIFFERS: ", same, count);
     if (first)
-        printf("  first reading that differs: tag %s\n", offline->plant->tags[first - 1].name);
+        printf("  first reading that differs from the recorded history: tag %s\n", offline->plant->tags[first - 1].name);
     return same == count;
 }
 
@@ -109,7 +110,8 @@ static bool same_pixels(const struct frame *frame, const json_t *statement, cons
     bool fits = json_integer_value(json_object_get(statement, "width")) == frame->width_px &&
                 json_integer_value(json_object_get(statement, "height")) == frame->height_px;
     size_t agreeing = fits ? count_agreeing(frame, rgb) : 0;
-    printf("  %s%zu of %zu pixels agree with the redrawn picture within 1/255\n", agreeing == all ? "" : "DIFFERS: ", agreeing, all);
+    printf("  %s%zu of %zu pixels of the picture agree with the redrawn picture within 1/255\n",
+           agreeing == all ? "" : "DIFFERS: ", agreeing, all);
     return agreeing == all;
 }
 

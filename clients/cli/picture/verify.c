@@ -23,7 +23,8 @@ static void print_statement(const char *path, const json_t *statement)
     printf("  plant %s, configuration %s, plantcastd %s\n", json_string_value(json_object_get(statement, "plant")),
            json_string_value(json_object_get(statement, "configuration")), json_string_value(json_object_get(statement, "server")));
     printf("  readings of %s%s%s\n", at_us ? at : taken, at_us ? " (history)" : "",
-           json_is_true(json_object_get(statement, "clock_unset")) ? "; the server's clock was not synchronised" : "");
+           json_is_true(json_object_get(statement, "clock_unset")) ? "; the server's clock was not synchronised, so this time may be wrong"
+                                                                   : "");
     const char *tier = json_string_value(json_object_get(statement, "tier"));
     const char *overlay = json_string_value(json_object_get(statement, "overlay"));
     if (overlay && tier && !strcmp(overlay, "none"))

@@ -50,9 +50,8 @@ static void print_suggestions(const struct suggest_options *options, const struc
             printf("%s,%.4f,%.4f,%.4f,%.5f,%.5f,%.5f,%.5f\n", asset, s->at_m[0], s->at_m[1], s->at_m[2], s->before, s->after,
                    s->unseen_before, s->unseen_after);
         else
-            printf("%2zu. %s at %.3f, %.3f, %.3f m: blindness falls from %.1f to %.1f %% (by %.1f); surface where no sensor detects "
-                   "anything: from "
-                   "%.1f to %.1f %%\n",
+            printf("%2zu. %s at %.3f, %.3f, %.3f m: blindness (smallest detectable hot spot) falls from %.1f to %.1f %% (by %.1f), surface "
+                   "without any detection from %.1f to %.1f %%\n",
                    i + 1, asset, s->at_m[0], s->at_m[1], s->at_m[2], 100 * s->before, 100 * s->after, 100 * (s->before - s->after),
                    100 * s->unseen_before, 100 * s->unseen_after);
     }
@@ -60,8 +59,8 @@ static void print_suggestions(const struct suggest_options *options, const struc
         printf("%zu of %zu sensors proposed: more sensors would not detect more hot spots of group '%s'\n", count, options->count,
                group->id);
     if (!options->csv)
-        printf("Blindness of a place: how much hotter than its surroundings a hot spot of %g m must be before any sensor detects it, "
-               "in %% of the group's range (%g %s).\n",
+        printf("Blindness: how much hotter than its surroundings a hot spot of %g m must be before any sensor detects it, in %% of the "
+               "group's range (%g %s).\n",
                group->hot_spot_m, group->max - group->min, group->unit);
 }
 

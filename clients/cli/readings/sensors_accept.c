@@ -92,14 +92,14 @@ static char *wrong_version(const struct plant *plant, const char *before, const 
     char *now = without_places(plant, before), *then = without_places(plant, after), *why = NULL;
     struct tag_lines lines = { 0 };
     if (!strcmp(before, after)) {
-        why = mem_strdup("this earlier version equals the present tag list");
+        why = mem_strdup("--undo: this earlier tag list equals the present tag list, so there is nothing to undo");
     } else if (!now || !then) {
-        why = mem_strdup("this earlier version does not list the same tags as the present tag list: restore it on the web page");
+        why = mem_strdup("--undo: this earlier tag list has other tags than the present tag list: to restore it anyway, use the web page");
     } else if (strcmp(now, then) != 0) {
         tag_lines(now, then, &lines);
-        why = mem_printf(
-            "this earlier version differs from the present tag list in more than `Place` (line %d): restore it on the web page",
-            lines.count ? lines.at[0].line : 1);
+        why = mem_printf("--undo: line %d of this earlier tag list differs in more than the column `Place`: to restore the list anyway, "
+                         "use the web page",
+                         lines.count ? lines.at[0].line : 1);
         tag_lines_finish(&lines);
     }
     mem_free(now);
@@ -126,8 +126,9 @@ static int undo(const struct accept_options *options, const struct plant *plant,
     struct refusal failed = { .code = REFUSAL_NONE };
     char *version = version_path(path, options->undo), *before = NULL, *after = NULL, *why = NULL;
     if (!version)
-        why = mem_printf("not an earlier version of the tag list %s: earlier versions are in the same folder as %s.1, %s.2, ...", path,
-                         text_base_name(path), text_base_name(path));
+        why = mem_printf(
+            "--undo: this is not an earlier version of the tag list %s: earlier versions are in the same folder as %s.1, %s.2, ...", path,
+            text_base_name(path), text_base_name(path));
     else if ((before = tag_file_read(path, &failed)) && (after = tag_file_read(version, &failed)))
         why = wrong_version(plant, before, after);
     mem_free(version);
@@ -144,10 +145,10 @@ static void print_outcome(const struct plant *plant, const uint8_t *outcome, boo
 {
     static const char *const words[ASSUMED_OUTCOMES] = { [ASSUMED_ACCEPTED] = "accepted",
                                                          [ASSUMED_NOWHERE] =
-                                                             "without a position: the tag list has neither Node nor X, Y, Z",
-                                                         [ASSUMED_MISSING] = "on an asset without a model",
-                                                         [ASSUMED_FAR] = "farther from the surface than --within",
-                                                         [ASSUMED_UNSURE] = "with a confidence below --confidence, or unknown" };
+                                                             "sensors without a position: the tag list has neither Node nor X, Y, Z",
+                                                         [ASSUMED_MISSING] = "sensors on an asset without a model",
+                                                         [ASSUMED_FAR] = "sensors farther from the surface than --within",
+                                                         [ASSUMED_UNSURE] = "sensors with a confidence below --confidence, or unknown" };
     size_t counts[ASSUMED_OUTCOMES] = { 0 };
     for (size_t i = 0; i < plant->tag_count; i++) {
         counts[outcome[i]]++;

@@ -31,7 +31,9 @@ static void print_usage(FILE *out)
           "                     for the service plantcastd@NAME: /var/lib/plantcast/NAME/prepared)\n"
           "  --folder DIR       folder of recorded readings (default: the folder given in the plant file, or PLANT.history;\n"
           "                     for the service plantcastd@NAME: /var/lib/plantcast/NAME/history)\n"
-          "Output: CSV with columns tag, verdict (found, none or unknown), change, error, scatter, unit, hours, cause.\n"
+          "Output: CSV with columns tag, verdict (found, none or unknown), change (drift within the week), error\n"
+          "(standard error of the change), scatter (standard deviation of the differences from the predicted\n"
+          "values), unit, hours (number of hours with readings), cause.\n"
           "The column `cause` says why a verdict is unknown. A number that cannot be computed is left empty.\n"
           "Exit status: 0 no sensor drifts, 1 a sensor drifts.\n",
           out);

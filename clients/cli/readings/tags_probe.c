@@ -100,8 +100,8 @@ static int probe(struct log *log, const struct plant_source *source, const struc
     if (status < 0)
         fprintf(stderr, "plantcast: %s: %s\n", modbus_link_name(link), strerror(-status));
     else if (status > 0)
-        fprintf(stderr, "plantcast: %s: unit %d refused to read %s:%d: %s\n", modbus_link_name(link), unit, prefixes[at->table], at->index,
-                modbus_strerror(MODBUS_ENOBASE + status));
+        fprintf(stderr, "plantcast: device %s: unit %d refused the request to read address %s:%d: %s\n", modbus_link_name(link), unit,
+                prefixes[at->table], at->index, modbus_strerror(MODBUS_ENOBASE + status));
     if (count > 0)
         printf("%s, unit %d, %s:%d\n", modbus_link_name(link), unit, prefixes[at->table], at->index);
     if (count > 0 && (at->table == TABLE_COIL || at->table == TABLE_DISCRETE))
@@ -128,7 +128,8 @@ int tags_probe(const char *device, const char *address, int address_base)
     const char *bang = strchr(address, '!'), *place = bang ? bang + 1 : address;
     if (address_base < 0 && *place >= '0' && *place <= '9') {
         fprintf(stderr,
-                "plantcast: %s: ambiguous: add --address-base 0 or 1, the number of the first register (with 1, the request reads %s:%d)\n",
+                "plantcast: %s: this address is ambiguous: add --address-base 0 or 1, the number of the device's first register (1 would "
+                "read %s:%d)\n",
                 address, prefixes[at.table], at.index);
         return 2;
     }

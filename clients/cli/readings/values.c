@@ -73,13 +73,13 @@ static void row_read(const struct plant *plant, const struct csv *csv, const str
     struct reading reading = { .received_utc_ns = snapshot->taken_utc_ns };
     char *end;
     if (tag < 0)
-        diag_error(csv->diag, csv->path, line, row->cells[0].column, "tag '%s' is not in %s", name, plant->files.tags_path);
+        diag_error(csv->diag, csv->path, line, row->cells[0].column, "tag '%s' is not in the tag list %s", name, plant->files.tags_path);
     if (!quality_parse(quality, &reading.quality))
         diag_error(csv->diag, csv->path, line, row->cells[columns->quality].column, "quality: expected good, uncertain or bad, found '%s'",
                    quality);
     reading.value = strtod(value, &end);
     if (*end != 0)
-        diag_error(csv->diag, csv->path, line, row->cells[columns->value].column, "value '%s' is not a number", value);
+        diag_error(csv->diag, csv->path, line, row->cells[columns->value].column, "value: expected a number, found '%s'", value);
     if (*value == 0 || !isfinite(reading.value))
         reading = (struct reading){ .quality = QUALITY_BAD_SENSOR_FAILURE, .received_utc_ns = snapshot->taken_utc_ns };
     if (tag < 0)

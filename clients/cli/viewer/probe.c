@@ -28,7 +28,7 @@ static void print_usage(FILE *out)
           "  sensor to frame   time from a changed reading at the daemon until a frame with that reading is decoded\n"
           "  behind leader     with --follow: time from a camera position of the leader until a follower has decoded\n"
           "                    a frame of that position, not counting the first 3 s\n"
-          "  steady            bytes received per second after the first 3 s, not counting answers to pings\n"
+          "  steady            data rate received by all sessions after the first 3 s, not counting answers to pings\n"
           "\n"
           "Options:\n"
           "  --motion random   move the cameras like a user: drags of up to 2 s with pauses\n"
@@ -161,7 +161,7 @@ int cmd_probe(const struct daemon_access *access, int argc, char **argv)
         }
         if (!take_option(option, &probe)) {
             if (option != '?')
-                fprintf(stderr, "plantcast: probe: '%s' is not a valid option value: see plantcast probe --help\n", optarg);
+                fprintf(stderr, "plantcast probe: an option has the invalid value '%s': see plantcast probe --help\n", optarg);
             print_usage(stderr);
             return 2;
         }

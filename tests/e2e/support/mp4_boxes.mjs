@@ -72,7 +72,7 @@ export function alteredFilms(film) {
             if (at === `${TRAK}/tkhd`)
                 one.writeUInt16BE(one.readUInt16BE(84) + 16, 84);
             return null;
-        }), 'the size in MP4 box avc1, '],
+        }), 'MP4 box avc1 states '],
         ['a hidden track', alter(patched(`${TRAK}/tkhd`, 11, '00')), else_('tkhd')],
         ['played faster', alter(patched('moov/mvhd', 28, '00020000')), else_('mvhd')],
         ['blended', alter(patched(`${TRAK}/mdia/minf/vmhd`, 12, '0024ffff')), else_('vmhd')],
