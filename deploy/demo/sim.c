@@ -46,7 +46,8 @@ static const char usage_text[] =
     "  --help           print this text\n"
     "\n"
     "A tag without a recorded series varies around the value in column `Sim Value` of the tag list\n"
-    "(default: 40 % of the tag's range). Column `Sim Loop` names the part of the process where the tag is.\n"
+    "(default: 40 % of the tag's range). Column `Sim Loop` names the part of the process where the tag is,\n"
+    "and so decides which faults change the tag.\n"
     "PLANT.map next to PLANT.yaml may contain options, one per line: TAG=SERIES (as for --map),\n"
     "`values FILE`, `speed X`, `loop`; # begins a comment.\n"
     "Simulated faults (upsets) occur one after another. Each fault changes these tags:\n";

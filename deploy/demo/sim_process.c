@@ -277,10 +277,10 @@ double process_upset(const struct process *process, const char **name)
 
 const char *process_upset_help(void)
 {
-    return "  cooling water lost   tags whose Sim Loop contains water, cooling, condenser, overhead, reflux, drum,\n"
+    return "  cooling water lost   tags whose column Sim Loop contains water, cooling, condenser, overhead, reflux, drum,\n"
            "                       offgas, distillate, column or reboiler\n"
-           "  exchanger fouled     tags whose Sim Loop contains feed, preheat, exchanger, bottoms, product or column\n"
-           "  bearing worn         tags whose Sim Loop contains pump or motor, or begins with P-, K-, C- or EA-;\n"
+           "  exchanger fouled     tags whose column Sim Loop contains feed, preheat, exchanger, bottoms, product or column\n"
+           "  bearing worn         tags whose column Sim Loop contains pump or motor, or begins with P-, K-, C- or EA-;\n"
            "                       one machine at a time\n"
-           "Tags whose Sim Loop contains storage, weather or steam change slowly.\n";
+           "Tags whose column Sim Loop contains storage, weather or steam change slowly.\n";
 }

@@ -88,7 +88,7 @@ static struct process *make_process(const struct plant *plant, struct diag *diag
             continue;
         tags[i].normal = strtod(normal, &end);
         if (*end || !isfinite(tags[i].normal))
-            csv_error(&csv, value_column, "Sim Value %s: expected a number", normal);
+            csv_error(&csv, value_column, "column Sim Value: expected a number, found %s", normal);
     }
     struct process *process = diag->errors ? NULL : process_create(tags, plant->tag_count, 1);
     mem_free(tags);

@@ -217,7 +217,7 @@ static void diff_sources(struct plant_diff *diff, const struct plant *before, co
 void plant_diff(const struct plant *before, const struct plant *after, struct plant_diff *out)
 {
     if (before->alarms != after->alarms)
-        say(out, "`alarms` (display, mirror or local) has changed");
+        say(out, "the key `alarms` of the plant file (display, mirror or local) has changed");
     diff_assets(out, before, after);
     diff_groups(out, before, after);
     diff_sources(out, before, after);
@@ -239,12 +239,12 @@ void plant_diff_finish(struct plant_diff *diff)
 const char *plant_needs_restart(const struct plant *before, const struct plant *after)
 {
     if (strcmp(before->time_zone, after->time_zone) != 0)
-        return "a changed time_zone requires a restart of the daemon";
+        return "a changed `time_zone` in the plant file takes effect only after a restart of the daemon";
     if (before->history.off != after->history.off || !same_text(before->history.folder, after->history.folder))
-        return "a changed history folder, or switching history on or off, requires a restart of the daemon";
+        return "a changed history folder, or history switched on or off, takes effect only after a restart of the daemon";
     bool same = before->display.colormap_count == after->display.colormap_count;
     for (size_t i = 0; same && i < before->display.colormap_count; i++)
         same = !strcmp(before->display.colormaps[i].name, after->display.colormaps[i].name) &&
                !memcmp(before->display.colormaps[i].rgb, after->display.colormaps[i].rgb, sizeof(before->display.colormaps[i].rgb));
-    return same ? NULL : "changed colour maps require a restart of the daemon";
+    return same ? NULL : "changed colour maps take effect only after a restart of the daemon";
 }

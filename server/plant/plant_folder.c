@@ -230,8 +230,8 @@ static char *say_holder(int fd)
     if (comm)
         fclose(comm);
     mem_free(path);
-    return pid > 0 ? mem_printf("%s (process %d) is using the folder", *name ? name : "another program", pid)
-                   : mem_strdup("another program is using the folder");
+    return pid > 0 ? mem_printf("%s (process %d) is using the plant's folder", *name ? name : "another program", pid)
+                   : mem_strdup("another program is using the plant's folder");
 }
 
 /* Opens the plant's folder, or duplicates the parent process's descriptor, which must refer to the same folder and hold its

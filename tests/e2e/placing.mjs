@@ -256,7 +256,8 @@ test('while another program is at work in the plant\'s folder, a list is not sav
     promise(t, 'until the loop, which does not wait, answers', performance.now() - began, 2000);
     const refused = await engineer.text('tags_saved', 60000);
     assert.equal(refused.saved, false);
-    assert.match(refused.errors.join(), /^the plant's folder .*: (flock|sh) \(process \d+\) is using the folder; try again/);
+    assert.match(refused.errors.join(), new RegExp('^the plant\'s folder .* cannot be locked: (flock|sh) \\(process \\d+\\) is using ' +
+        'the plant\'s folder; try again'));
     assert.equal(readFileSync(tagsFile, 'utf8'), good);
     assert.deepEqual(readdirSync(plant.folder).sort(), files);
     // While another program holds the folder's lock for a short time, saving waits and then succeeds. On a busy machine the

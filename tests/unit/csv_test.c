@@ -129,7 +129,7 @@ CASE(blank_rows_are_passed_over)
 CASE(mistakes_have_a_place)
 {
     open_text(f, "A,B\n1,\"open\n2,3\n");
-    assert_one_error(f, 2, 3, "this quote is never closed");
+    assert_one_error(f, 2, 3, "a quote that begins here is never closed");
     open_text(f, "A,B\n1,\"x\" y\n2,3\n");
     assert_one_error(f, 2, 7, "text after the closing quote");
     open_text(f, "A,B\n1,2\n1,2,,4,5\n");

@@ -77,16 +77,23 @@ TEST(mistakes_are_found)
         const char *text, *why;
         size_t at;
     } cases[] = {
-        { "", "expected [TAG]", 0 }, { "1+", "expected [TAG]", 2 }, { "1 2", "or the end, found '2'", 2 },
+        { "", "needs [TAG]", 0 },
+        { "1+", "needs [TAG]", 2 },
+        { "1 2", "or the end here, found '2'", 2 },
         { "[c]", "unknown tag 'c'", 0 },
-        { "[a", "expected ]", 0 }, { "(1", "expected )", 2 }, { "1)", "or the end", 1 },
-        { "TT-101", "expected [TAG], a number, or one of", 0 },
-        { "mean 1", "expected ( after mean", 5 }, { "mean()", "expected [TAG]", 5 },
-        { "mean(1", "expected ) after the arguments of mean", 6 },
+        { "[a", "needs ]", 0 },
+        { "(1", "expected )", 2 },
+        { "1)", "or the end", 1 },
+        { "TT-101", "needs [TAG], a number, or one of", 0 },
+        { "mean 1", "expected ( after mean", 5 },
+        { "mean()", "needs [TAG]", 5 },
+        { "mean(1", "the expression needs ) after the arguments of mean", 6 },
         { "abs(1,2)", "expected 1 argument for abs, found 2", 7 },
-        { "1..2", "expected a number", 0 },
-        { "1e", "expected a number", 0 },
-        { "0x10", "or the end", 1 }, { "2**3", "expected [TAG]", 2 }, { "[]", "unknown tag ''", 0 },
+        { "1..2", "needs a number", 0 },
+        { "1e", "needs a number", 0 },
+        { "0x10", "or the end", 1 },
+        { "2**3", "needs [TAG]", 2 },
+        { "[]", "unknown tag ''", 0 },
     };
     for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
         char why[200] = "";
@@ -235,8 +242,8 @@ TEST_WITH(rows_are_checked, plant_case_set_up, plant_case_tear_down)
                     "Tag Name,Address,Source,Scaling\n"
                     "a,= [b] + 1,,\nb,= [c],,\nc,=[a]*2,,\nd,=[e],,\nf,=1+,,\ng,=2,plc,\nh,=3,,Linear\ni,=[i],,\n");
     FOUND(c, { "tags.csv", 2, 3, "'a' is computed from itself" }, { "tags.csv", 5, 3, "unknown tag 'e', at character 2" },
-          { "tags.csv", 6, 3, "Address: '=1+': expected [TAG], a number, or one of" },
-          { "tags.csv", 7, 6, "Source: must be empty, because the address is an expression" },
+          { "tags.csv", 6, 3, "Address: '=1+': the expression needs [TAG], a number, or one of" },
+          { "tags.csv", 7, 6, "Source: must be empty, because Address is an expression that computes the tag from other tags" },
           { "tags.csv", 8, 7, "Scaling: expected None, because the value is already in engineering units" },
           { "tags.csv", 8, 1, "Raw Low" }, { "tags.csv", 8, 1, "Scaled Low" });
 }

@@ -49,9 +49,15 @@ CASE(each_difference_is_said)
     struct plant *after = load(c, YAML("  - { id: temp, unit: bar, min: 0, max: 120 }\n  - { id: flow, unit: m, min: 0, max: 1 }\n",
                                        "alarms: local\n"),
                                TAGS "NEW,40009,bar,\nB,40004,bar,\nA,40001,bar,95\nC,40005,bar,70\nD,40006,bar,\n");
-    static const char *const wanted[] = { "`alarms` (display, mirror or local) has changed", "group temp changed",   "group flow added",
-                                          "tag GONE removed",                 "tag NEW added",        "tag B changed: address",
-                                          "tag A: H 90 > 95",                 "tag C: H none > 70",   "tag D: H 80 > none" };
+    static const char *const wanted[] = { "the key `alarms` of the plant file (display, mirror or local) has changed",
+                                          "group temp changed",
+                                          "group flow added",
+                                          "tag GONE removed",
+                                          "tag NEW added",
+                                          "tag B changed: address",
+                                          "tag A: H 90 > 95",
+                                          "tag C: H none > 70",
+                                          "tag D: H 80 > none" };
     assert_diff(c, before, after, wanted, 9);
     assert_string_not_equal(before->files.hash, after->files.hash);
     assert_null(plant_needs_restart(before, after));

@@ -57,7 +57,7 @@ CASE(secrets_do_not_stand_in_the_file)
             "  - { id: b, webhook: \"http://h.example/\", token_file: t }\n  rules: [{ id: r, to: a }]");
     FOUND(c, { "plant.yaml", 6, 69, "unknown key 'password'" }, { "plant.yaml", 6, 19, "do not write a password in the plant file" },
           { "plant.yaml", 8, 23, "do not write a password in the plant file" },
-          { "plant.yaml", 9, 56, "a token is sent only over https://" });
+          { "plant.yaml", 9, 56, "token_file: needs an address that begins with https://" });
 }
 
 CASE(what_is_wrong_is_said_at_its_place)
@@ -66,14 +66,13 @@ CASE(what_is_wrong_is_said_at_its_place)
             "  rules:\n  - { id: r, to: [b], days: [mon-foo], hours: 6-14 }\n"
             "  - { id: r, to: a, priority: 5, escalate: [{ after_min: 9, to: c }, { after_min: 9, to: c }] }\n  - { id: s }");
     FOUND(c, { "plant.yaml", 6, 13, "gather_s: expected" }, { "plant.yaml", 8, 21, "email: expected an address" },
-          { "plant.yaml", 8, 21, "requires a server in the key `mail`" }, { "plant.yaml", 9, 23, "begins with an unsupported scheme" },
+          { "plant.yaml", 8, 21, "requires a server in the key `mail`" },
+          { "plant.yaml", 9, 23, "begins with a scheme (such as https://) that is not supported here" },
           { "plant.yaml", 9, 11, "'a' is listed twice (first at line 8)" },
-          { "plant.yaml", 10, 5, "expected exactly one of email, webhook" },
-          { "plant.yaml", 12, 18, "unknown recipient 'b'" }, { "plant.yaml", 12, 30, "or a span such as mon-fri" },
-          { "plant.yaml", 12, 47, "a span such as 06:00-14:00" }, { "plant.yaml", 13, 31, "priority: expected" },
-          { "plant.yaml", 13, 83, "expected a number greater than the previous one (9)" },
-          { "plant.yaml", 13, 11, "rule 'r' is listed twice" },
-          { "plant.yaml", 14, 5, "a rule needs the key 'to'" });
+          { "plant.yaml", 10, 5, "expected exactly one of email, webhook" }, { "plant.yaml", 12, 18, "unknown recipient 'b'" },
+          { "plant.yaml", 12, 30, "or a span such as mon-fri" }, { "plant.yaml", 12, 47, "a span such as 06:00-14:00" },
+          { "plant.yaml", 13, 31, "priority: expected" }, { "plant.yaml", 13, 83, "expected a number greater than the previous one (9)" },
+          { "plant.yaml", 13, 11, "rule 'r' is listed twice" }, { "plant.yaml", 14, 5, "a rule needs the key 'to'" });
 }
 
 CASE(it_needs_the_history)

@@ -348,11 +348,12 @@ CASE(links_are_templates_of_addresses)
               "plant: { name: P }\nlinks:\n- { name: A, url: 'javascript:alert(1)' }\n- { name: B, url: 'https://{id}.example/' }\n"
               "- { name: C, url: 'https://a.example/{name}' }\n- { name: D, url: 'https:// a/' }\n- { url: 'http://a/' }\n"
               "- { name: F, of: pump, url: 'http:///x' }\n- { name: G, of: tag, url: 'http://a/{tag' }");
-    FOUND(f, { "plant.yaml", 3, 19, "begins with https:// or http://" }, { "plant.yaml", 4, 19, "the address names no server" },
-          { "plant.yaml", 5, 19, "only {id}, {tag} and {area} are allowed in braces" }, { "plant.yaml", 6, 19, "white space" },
+    FOUND(f, { "plant.yaml", 3, 19, "must begin with https:// or http://" },
+          { "plant.yaml", 4, 19, "the address of the link names no server" },
+          { "plant.yaml", 5, 19, "may contain only {id}, {tag} and {area} in braces" }, { "plant.yaml", 6, 19, "white space" },
           { "plant.yaml", 7, 3, "a link needs the key 'name'" }, { "plant.yaml", 8, 18, "expected" },
-          { "plant.yaml", 8, 29, "the address names no server" },
-          { "plant.yaml", 9, 28, "only {name}, {asset} and {group} are allowed in braces" });
+          { "plant.yaml", 8, 29, "the address of the link names no server" },
+          { "plant.yaml", 9, 28, "may contain only {name}, {asset} and {group} in braces" });
 }
 
 CASE(assets_have_properties_of_their_own)
@@ -524,7 +525,7 @@ CASE(numbers_have_ranges)
           { "plant.yaml", 4, 72, "poll_ms: expected a whole number from 10 to 86400000" },
           { "plant.yaml", 4, 87, "timeout_ms: expected a whole number from 10 to 60000" });
     load_with(f, 1, "plant: { name: P, view: { eye: [1, 1, 1], target: [1, 1, 1], fov: 180 } }");
-    FOUND(f, { "plant.yaml", 1, 51, "target: expected a point other than eye" },
+    FOUND(f, { "plant.yaml", 1, 51, "target: must be another point than `eye`" },
           { "plant.yaml", 1, 67, "fov: expected a number from 1 to 120" });
     load_with(f, 2, "assets: [{ id: E, model: m.glb, placement: { translate: [0, 2e7, 0], scale: 0 } }]");
     FOUND(f, { "plant.yaml", 2, 61, "translate: expected a number from -10000000 to 10000000" },

@@ -100,8 +100,8 @@ CASE(wrong_other_plants_are_said_at_their_place)
     load(c, "other_plants:\n- { id: a, url: \"ftp://h/\" }\n- { id: b, url: \"http://h/\", token_file: t }\n"
             "- { id: b, url: \"https://u:p@h/\" }\n- { id: c, url: \"https://h/?x\", every_s: 1, width: 100 }\n"
             "- { id: c d, url: \"https://h/\", view: a&b }\n- { url: \"https://h/\" }");
-    FOUND(c, { "plant.yaml", 7, 17, "url: the address begins with an unsupported scheme" }, { "plant.yaml", 8, 42, "cannot be read" },
-          { "plant.yaml", 8, 42, "token_file: a token is sent only over https" },
+    FOUND(c, { "plant.yaml", 7, 17, "url: the address begins with a scheme" }, { "plant.yaml", 8, 42, "cannot be read" },
+          { "plant.yaml", 8, 42, "token_file: needs an address that begins with https" },
           { "plant.yaml", 9, 17, "do not write a password in the plant file" }, { "plant.yaml", 9, 9, "'b'" },
           { "plant.yaml", 10, 17, "without '?' and '#'" }, { "plant.yaml", 10, 42, "every_s" }, { "plant.yaml", 10, 52, "width" },
           { "plant.yaml", 11, 9, "id: expected letters" }, { "plant.yaml", 11, 39, "view: expected the id" },
@@ -150,7 +150,7 @@ CASE(what_is_wrong_is_said_at_its_place)
             " { area: b, tiles: [] }]");
     FOUND(c, { "plant.yaml", 7, 9, "id: expected letters, digits" },
           { "plant.yaml", 8, 18, "a blank, a control character or a non-ASCII letter" },
-          { "plant.yaml", 9, 18, "the address must not begin with #" },
+          { "plant.yaml", 9, 18, "the address of the view must not begin with #" },
           { "plant.yaml", 9, 9, "view 'v' is listed twice (first at line 8)" }, { "plant.yaml", 10, 3, "view" },
           { "plant.yaml", 12, 22, "displays: expected at least one" }, { "plant.yaml", 14, 11, "inches" },
           { "plant.yaml", 15, 14, "a span such as" }, { "plant.yaml", 17, 12, "the names of panes' areas" },

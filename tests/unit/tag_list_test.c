@@ -243,7 +243,7 @@ CASE(addresses_and_types_are_checked)
                     "H,465536,Long\n"
                     "I,hr:65533,Double\n");
     assert_null(c->plant);
-    FOUND(c, { "tags.csv", 2, 3, "Address: '4x1': 1 digit; expected 5 or 6 such as 40001 or 400001" },
+    FOUND(c, { "tags.csv", 2, 3, "Address: '4x1': this Modbus address has 1 digit; expected 5 or 6 such as 40001 or 400001" },
           { "tags.csv", 3, 3, "Address: expected the address of a register, such as 400001 or hr:0" },
           { "tags.csv", 4, 9, "Data Type: unknown type 'String'; expected one of: bool, int16" },
           { "tags.csv", 5, 9, "Data Type: unknown type 'Flot'; did you mean 'float'?" },
@@ -253,7 +253,7 @@ CASE(addresses_and_types_are_checked)
           { "tags.csv", 9, 3, "int32 needs 2 registers, but the last register is 65535" },
           { "tags.csv", 10, 3, "float64 needs 4 registers" });
     plant_case_load(c, yaml, "Tag Name,Data Type\nA,Word\n");
-    FOUND(c, { "tags.csv", 1, 1, "the header has no column 'Address'" });
+    FOUND(c, { "tags.csv", 1, 1, "the header of the tag list has no column 'Address'" });
     /* the plant file has no sources, so tags need no address: their values arrive by other means */
     plant_case_load(c, yaml_no_source, "Tag Name\nA\n");
     plant_case_assert_loaded(c, 0);
@@ -345,7 +345,8 @@ CASE(names_are_unique)
           { "tags.csv", 5, 7, "Tag Name: expected a name, found none" },
           { "tags.csv", 6, 7, "Tag Name: 'A' is listed twice (first at line 2)" });
     plant_case_load(c, yaml, "Name,Address\nA,40001\n");
-    FOUND(c, { "tags.csv", 1, 1, "the header has no column 'Tag Name'" }, { "tags.csv", 1, 1, "unknown column 'Name' is ignored" });
+    FOUND(c, { "tags.csv", 1, 1, "the header of the tag list has no column 'Tag Name'" },
+          { "tags.csv", 1, 1, "unknown column 'Name' is ignored" });
 }
 
 /* Warnings for values that share registers: a float that begins one register too early, 16-bit values within larger ones, and

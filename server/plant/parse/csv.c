@@ -44,7 +44,7 @@ static void read_quoted(struct csv *csv, struct csv_cell *cell, char **end)
     for (;;) {
         char c = *csv->at;
         if (!c) {
-            diag_error(csv->diag, csv->path, cell->line, cell->column, "this quote is never closed");
+            diag_error(csv->diag, csv->path, cell->line, cell->column, "a quote that begins here is never closed");
             break;
         }
         step(csv);
@@ -171,7 +171,7 @@ static bool begin(struct csv *csv, const char *path, char *text, struct diag *di
     *csv = (struct csv){ .path = mem_strdup(path), .diag = diag, .bytes = text, .at = text, .line = 1, .column = 1 };
     csv->separator = csv_separator(text);
     if (!read_row(csv, &csv->header)) {
-        diag_error(diag, path, 1, 1, "has no header row");
+        diag_error(diag, path, 1, 1, "the file has no header row with the names of its columns");
         csv_close(csv);
         return false;
     }

@@ -10,10 +10,11 @@ enum { DEFAULT_TIMEOUT_S = 900 };
 static void check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, const struct plant_conversion *made)
 {
     if (made->model && made->from && !strcmp(made->model, made->from))
-        yaml_error(reader, yaml_map_place(map, "from"), "from: expected another file than that of model");
+        yaml_error(reader, yaml_map_place(map, "from"), "from: must name another file than `model`, which the conversion writes");
     for (const struct plant_conversion *other = plant->conversions; made->model && other < made; other++)
         if (other->model && !strcmp(other->model, made->model))
-            yaml_error(reader, yaml_map_place(map, "model"), "model: '%s' is created twice (first at line %d)", made->model, other->line);
+            yaml_error(reader, yaml_map_place(map, "model"), "model: another conversion already creates '%s' (line %d)", made->model,
+                       other->line);
 }
 
 void plant_conversions_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant)

@@ -69,7 +69,7 @@ static void read_view(struct yaml_reader *reader, yaml_node_t *node, void *recor
     for (int i = 0; i < 3; i++)
         view->set |= fabs(view->eye_m[i] - view->target_m[i]) > 1e-3;
     if (!view->set)
-        yaml_error(reader, yaml_map_place(&map, "target"), "target: expected a point other than eye");
+        yaml_error(reader, yaml_map_place(&map, "target"), "target: must be another point than `eye`");
 }
 
 static void read_plant(struct yaml_reader *reader, yaml_node_t *node, void *record)
@@ -437,7 +437,8 @@ void plant_file_read(struct plant *plant, struct diag *diag)
     stand_upright(plant);
     plant_resolve_path(plant, &plant->files.tags_path);
     if (plant->files.tags_path && access(plant->files.tags_path, R_OK) != 0) {
-        yaml_error(&reader, yaml_map_place(&map, "tags"), "tags: '%s' cannot be read: %s", plant->files.tags_path, strerror(errno));
+        yaml_error(&reader, yaml_map_place(&map, "tags"), "tags: the tag list '%s' cannot be read: %s", plant->files.tags_path,
+                   strerror(errno));
         mem_free(plant->files.tags_path);
         plant->files.tags_path = NULL;
     }

@@ -24,17 +24,18 @@ static const char *wrong_with(const char *url, bool of_tags)
     const char *const *known = of_tags ? of_tag : of_asset;
     size_t scheme = scheme_length(url), host = strcspn(url + scheme, "/?#{");
     if (scheme == 0)
-        return "expected an address that begins with https:// or http://";
+        return "the address of the link must begin with https:// or http://";
     if (host == 0 || url[scheme + host] == '{')
-        return "the address names no server";
+        return "the address of the link names no server";
     for (const char *at = url; *at; at++) {
         if (isspace((unsigned char)*at) || iscntrl((unsigned char)*at))
-            return "white space is not allowed in an address";
+            return "the address of the link contains white space, which is not allowed";
         bool put_in = false;
         for (size_t i = 0; *at == '{' && i < 3; i++)
             put_in |= !strncmp(at, known[i], strlen(known[i]));
         if (*at == '{' && !put_in)
-            return of_tags ? "only {name}, {asset} and {group} are allowed in braces" : "only {id}, {tag} and {area} are allowed in braces";
+            return of_tags ? "the address of the link may contain only {name}, {asset} and {group} in braces"
+                           : "the address of the link may contain only {id}, {tag} and {area} in braces";
     }
     return NULL;
 }
@@ -48,7 +49,7 @@ void plant_links_read(struct yaml_reader *reader, yaml_node_t *node, void *recor
                                             { 0 } };
     int count = yaml_list_count(reader, node, "links");
     if (count > PLANT_LINKS)
-        yaml_error(reader, yaml_place(node), "links: expected at most %d, found %d", PLANT_LINKS, count);
+        yaml_error(reader, yaml_place(node), "links: expected at most %d links, found %d", PLANT_LINKS, count);
     for (int i = 0; i < count && i < PLANT_LINKS; i++) {
         struct plant_link *link = &plant->display.links[plant->display.link_count++];
         struct yaml_map map;

@@ -113,14 +113,15 @@ static bool read_named_table(const char **p, struct modbus_address *out, char wh
     while (i < COUNT(names) && strncasecmp(*p, names[i].prefix, 3) != 0)
         i++;
     if (i == COUNT(names)) {
-        snprintf(why, 200, "expected 5 or 6 digits such as 40001 or 400001, or co:, di:, ir: or hr: and a number from 0");
+        snprintf(why, 200,
+                 "expected a Modbus address of 5 or 6 digits such as 40001 or 400001, or co:, di:, ir: or hr: and a number from 0");
         return false;
     }
     long index;
     *p += 3;
     int digits = read_digits(p, &index);
     if (digits == 0 || digits > 6 || index > 65535) {
-        snprintf(why, 200, "expected a number from 0 to 65535 after %s", names[i].prefix);
+        snprintf(why, 200, "expected the number of a Modbus register or bit, 0 to 65535, after %s", names[i].prefix);
         return false;
     }
     out->table = names[i].table;
@@ -137,19 +138,20 @@ static bool read_digit_table(const char **p, int address_base, struct modbus_add
     long number;
     int digits = read_digits(p, &number);
     if (digits != 5 && digits != 6) {
-        snprintf(why, 200, "%d%s digit%s; expected 5 or 6 such as 40001 or 400001 (or hr:0, counted from 0)", digits > 6 ? 6 : digits,
-                 digits > 6 ? " and more" : "", digits == 1 ? "" : "s");
+        snprintf(why, 200, "this Modbus address has %d%s digit%s; expected 5 or 6 such as 40001 or 400001 (or hr:0, counted from 0)",
+                 digits > 6 ? 6 : digits, digits > 6 ? " and more" : "", digits == 1 ? "" : "s");
         return false;
     }
     if (!strchr("0134", first)) {
-        snprintf(why, 200, "the first digit is %c; expected 0 (coil), 1 (discrete input), 3 (input register) or 4 (holding register)",
+        snprintf(why, 200,
+                 "this Modbus address begins with %c; expected 0 (coil), 1 (discrete input), 3 (input register) or 4 (holding register)",
                  first);
         return false;
     }
     long index = number - (first - '0') * (digits == 5 ? 10000L : 100000L) - address_base;
     if (index < 0 || index > 65535) {
-        snprintf(why, 200, "expected a number from %d to %d after the first digit (address_base is %d)", address_base, 65535 + address_base,
-                 address_base);
+        snprintf(why, 200, "expected a register number from %d to %d after the first digit of this Modbus address (address_base is %d)",
+                 address_base, 65535 + address_base, address_base);
         return false;
     }
     out->table = tables[first - '0'];
@@ -181,7 +183,7 @@ static bool read_bit(const char **p, struct modbus_address *out, char why[200])
     (*p)++;
     int digits = read_digits(p, &bit);
     if (digits == 0 || digits > 6 || bit > 15) {
-        snprintf(why, 200, "expected a bit number from 0 to 15 after the point");
+        snprintf(why, 200, "expected the number of a bit in the register, 0 to 15, after the point of this Modbus address");
         return false;
     }
     if (out->table == TABLE_COIL || out->table == TABLE_DISCRETE) {
@@ -198,7 +200,7 @@ static bool read_order(const char **p, struct modbus_address *out, char why[200]
     if (**p != '#')
         return true;
     if (!byte_order_parse(*p + 1, &out->byte_order)) {
-        snprintf(why, 200, "expected #LL (ABCD), #BL (CDAB), #LB (BADC) or #BB (DCBA) at the end");
+        snprintf(why, 200, "expected the byte order #LL (ABCD), #BL (CDAB), #LB (BADC) or #BB (DCBA) at the end of this Modbus address");
         return false;
     }
     *p += strlen(*p);
@@ -216,7 +218,8 @@ bool address_parse(const char *text, int address_base, struct modbus_address *ou
     if (!read_bit(&p, out, why) || !read_order(&p, out, why))
         return false;
     if (*p) {
-        snprintf(why, 200, "expected nothing after '%.*s', found '%.40s'", p - text > 40 ? 40 : (int)(p - text), text, p);
+        snprintf(why, 200, "this Modbus address is complete after '%.*s', but '%.40s' follows", p - text > 40 ? 40 : (int)(p - text), text,
+                 p);
         return false;
     }
     return true;

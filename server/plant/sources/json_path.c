@@ -124,7 +124,7 @@ static bool read_operand(const char **at, struct json_path_test *out, char why[2
     const char *p = *at;
     bool named = *p != '@';
     if (*p == '$' || *p == '!' || *p == '*')
-        return wrong(why, "expected @.member == a string or number in the filter", *at);
+        return wrong(why, "the path's filter must look like @.member == a string or number", *at);
     p += !named;
     p += !named && *p == '.';
     out->path = p;
@@ -133,12 +133,12 @@ static bool read_operand(const char **at, struct json_path_test *out, char why[2
         if (!json_path_next_operand(&p, &step, why))
             return false;
         if (step.kind == JSON_PATH_FILTER)
-            return wrong(why, "a filter inside a filter is not supported", *at);
+            return wrong(why, "the path has a filter inside a filter, which Plantcast does not support", *at);
         more = p[-1] == '.' || *p == '[';
     }
     out->end = p;
     if (*p == '(')
-        return wrong(why, "functions are not supported", *at);
+        return wrong(why, "the path's filter has a function, which Plantcast does not support", *at);
     *at = p;
     return true;
 }
@@ -152,12 +152,13 @@ static bool read_test(const char **at, struct json_path_test *out, char why[200]
         return false;
     skip_blanks(at);
     if (strncmp(*at, "==", 2) != 0)
-        return wrong(why, "expected == (the only supported comparison)", *at);
+        return wrong(why, "the path's filter needs ==, the only comparison that Plantcast supports", *at);
     *at += 2;
     skip_blanks(at);
     if (literal_first)
         return read_operand(at, out, why);
-    return read_literal(at, out, why) || (!*why && wrong(why, "expected a string, a number, true, false or null after ==", begin));
+    return read_literal(at, out, why) ||
+           (!*why && wrong(why, "the path's filter needs a string, a number, true, false or null after ==", begin));
 }
 
 /* Reads a filter's comparisons, joined by && and optionally in parentheses. Returns false with the reason in `why` if that fails. */
@@ -173,7 +174,7 @@ static bool read_tests(const char **at, struct json_path_step *out, int depth, c
                 return wrong(why, "expected )", *at);
             ++*at;
         } else if (out->test_count == JSON_PATH_MAX_TESTS) {
-            return wrong(why, "expected at most 4 comparisons", *at);
+            return wrong(why, "the path's filter has more than 4 comparisons, the most that Plantcast supports", *at);
         } else if (!read_test(at, &out->tests[out->test_count++], why)) {
             return false;
         }
@@ -205,7 +206,7 @@ static const char *refusal_in_bracket(const char *at)
     case '*': return "a wildcard selects several values; expected a path to one value";
     case ':': return "a slice selects several values; expected a path to one value";
     case ',': return "several selectors in one bracket select several values; expected a path to one value";
-    case '|': return "|| is not supported in filters";
+    case '|': return "the path's filter has ||, which Plantcast does not support";
     default: return "expected a path such as data.temperature, items[0].value or [\"odd name\"], and ]";
     }
 }

@@ -25,11 +25,11 @@ bool mqtt_template_check(const char *text, char why[200])
 {
     for (const char *brace = strchr(text, '{'); brace; brace = strchr(brace + 1, '{'))
         if (field_at(brace) == FIELD_COUNT) {
-            snprintf(why, 200, "expected {tag}, {asset}, {group} or {address}, found '%.20s'", brace);
+            snprintf(why, 200, "the MQTT topic may contain only {tag}, {asset}, {group} and {address} in braces, found '%.20s'", brace);
             return false;
         }
     if (strpbrk(text, "+#")) {
-        snprintf(why, 200, "wildcards (+ and #) match many topics; expected one topic for each tag");
+        snprintf(why, 200, "the MQTT topic has a wildcard (+ or #), which matches many topics; expected one topic for each tag");
         return false;
     }
     return true;
@@ -56,7 +56,7 @@ static bool fill_template(const struct plant *plant, const struct plant_tag *tag
         }
         const char *text = field_text(plant, tag, address, field);
         if (!text) {
-            snprintf(why, 200, "the source's topic contains %s, which this tag does not have", field_names[field]);
+            snprintf(why, 200, "the source's key `topic` contains %s, which this tag does not have", field_names[field]);
             return false;
         }
         text_add(out, "%s", text);
@@ -80,13 +80,13 @@ static bool is_sparkplug(const char *topic)
 static bool check_topic(const char *topic, bool sparkplug, char why[200])
 {
     if (!*topic)
-        snprintf(why, 200, "expected a topic here, or the key `topic` in the source");
+        snprintf(why, 200, "this tag has no MQTT topic: write one as its Address, or set the key `topic` of the source");
     else if (strlen(topic) > MQTT_TOPIC_BYTES)
-        snprintf(why, 200, "the topic has %zu bytes; expected at most %d", strlen(topic), MQTT_TOPIC_BYTES);
+        snprintf(why, 200, "the MQTT topic has %zu bytes; expected at most %d", strlen(topic), MQTT_TOPIC_BYTES);
     else if (strpbrk(topic, "+#"))
-        snprintf(why, 200, "wildcards (+ and #) match many topics; expected one topic");
+        snprintf(why, 200, "the MQTT topic has a wildcard (+ or #), which matches many topics; expected one topic");
     else if (sparkplug && !is_sparkplug(topic))
-        snprintf(why, 200, "expected GROUP/NODE#METRIC or GROUP/NODE/DEVICE#METRIC");
+        snprintf(why, 200, "expected a Sparkplug address GROUP/NODE#METRIC or GROUP/NODE/DEVICE#METRIC");
     else
         return true;
     return false;
@@ -104,7 +104,7 @@ bool mqtt_address_resolve(const struct plant *plant, struct plant_tag *tag, char
     tag->signal.path = mem_strdup(sharp && sharp[1] ? sharp + 1 : mqtt->payload == MQTT_SPARKPLUG ? tag->name : "");
     good = good && check_topic(tag->signal.topic, mqtt->payload == MQTT_SPARKPLUG, why);
     if (good && *tag->signal.path && mqtt->payload == MQTT_NUMBER) {
-        snprintf(why, 200, "a path after # is not allowed with payload: number");
+        snprintf(why, 200, "a path after # is not allowed with `payload: number`, whose messages contain just a number");
         good = false;
     }
     if (good && *tag->signal.path && mqtt->payload == MQTT_JSON)

@@ -68,12 +68,13 @@ static char *read_namespace(const char **at, const char *of_source, char why[200
     const char *end = strchr(*at, ';');
     snprintf(why, 200, "%s", EXPECTED);
     if (!strncmp(*at, "ns=", 3)) {
-        snprintf(why, 200, "namespace numbers can change when the server restarts; write nsu=URI; instead");
+        snprintf(why, 200,
+                 "ns=NUMBER is not allowed, because namespace numbers can change when the OPC UA server restarts; write nsu=URI; instead");
         return NULL;
     }
     if (strncmp(*at, "nsu=", 4) != 0) {
         if (!of_source)
-            snprintf(why, 200, "%s, or the key namespace in the source", EXPECTED);
+            snprintf(why, 200, "%s, or set the key `namespace` of the source", EXPECTED);
         return of_source ? mem_strdup(of_source) : NULL;
     }
     if (!end || end == *at + 4)
@@ -87,7 +88,7 @@ bool opcua_address_resolve(const struct plant *plant, struct plant_tag *tag, cha
 {
     const char *at = tag->signal.address;
     if (!read_element(&at, &tag->signal.element)) {
-        snprintf(why, 200, "expected an element from 0 to 1000000 in brackets");
+        snprintf(why, 200, "expected the number of an array element, 0 to 1000000, in brackets");
         return false;
     }
     tag->signal.topic = read_namespace(&at, plant->sources[tag->source].opcua.name_space, why);

@@ -26,7 +26,7 @@ static const char *wrong_with(const char *url, const char *plain, const char *se
 {
     size_t plain_length = strlen(plain), secure_length = strlen(secure);
     if (strncmp(url, secure, secure_length) != 0 && strncmp(url, plain, plain_length) != 0)
-        return "the address begins with an unsupported scheme";
+        return "the address begins with a scheme (such as https://) that is not supported here";
     const char *host = host_of(url);
     size_t host_length = strcspn(host, "/?#");
     if (host_length == 0)
@@ -35,7 +35,7 @@ static const char *wrong_with(const char *url, const char *plain, const char *se
         return "do not write a password in the plant file; write it to a file, and name the file in password_file or token_file";
     for (const char *at = url; *at; at++)
         if ((unsigned char)*at <= ' ' || *at == 127)
-            return "white space is not allowed in an address";
+            return "the address contains white space, which is not allowed";
     return NULL;
 }
 
@@ -52,5 +52,6 @@ void url_check_token(struct yaml_reader *reader, const struct yaml_map *map, con
 {
     if (yaml_map_has(map, "token_file") && url && strncmp(url, "https://", 8) != 0 && !url_is_here(url))
         yaml_error(reader, yaml_map_place(map, "token_file"),
-                   "token_file: a token is sent only over https://, or to a server on this machine");
+                   "token_file: needs an address that begins with https://, or a server on this machine, because the token would be "
+                   "readable on the network");
 }

@@ -136,7 +136,7 @@ static char peek(struct expression_parser *parser)
 static bool add_step(struct expression_parser *parser, struct expression_step step)
 {
     if (parser->out->count == MAX_STEPS)
-        return fail(parser, "expected at most 256 numbers, tags and operations%s", "");
+        return fail(parser, "the expression has more than 256 numbers, tags and operations, the maximum%s", "");
     parser->out->steps[parser->out->count++] = step;
     return true;
 }
@@ -155,7 +155,7 @@ static bool parse_number(struct expression_parser *parser)
     bool good = number_parse(text, &number) == NUMBER_GOOD;
     mem_free(text);
     if (!good)
-        return fail(parser, "expected a number such as 1.5%s", "");
+        return fail(parser, "the expression needs a number such as 1.5 here%s", "");
     parser->p += length;
     return add_step(parser, (struct expression_step){ .operation = OP_NUMBER, .number = number });
 }
@@ -167,7 +167,7 @@ static bool add_input(struct expression_parser *parser, int found)
     while (i < out->input_count && out->inputs[i] != found)
         i++;
     if (i == EXPRESSION_INPUTS)
-        return fail(parser, "expected at most 64 different tags%s", "");
+        return fail(parser, "the expression has more than 64 different tags, the maximum%s", "");
     if (i == out->input_count)
         out->inputs[out->input_count++] = found;
     return add_step(parser, (struct expression_step){ .operation = OP_INPUT, .index = (int)i });
@@ -177,7 +177,7 @@ static bool parse_name(struct expression_parser *parser)
 {
     const char *end = strchr(parser->p, ']');
     if (!end)
-        return fail(parser, "expected ] after the name of a tag%s", "");
+        return fail(parser, "the expression needs ] after the name of a tag%s", "");
     char *name = mem_printf("%.*s", (int)(end - parser->p - 1), parser->p + 1);
     int found = parser->find(parser->arg, name);
     if (found < 0)
@@ -201,7 +201,7 @@ static bool parse_arguments(struct expression_parser *parser, int function)
         next = peek(parser);
     } while ((next == ',' || next == ';') && count < MAX_ARGUMENTS);
     if (next != ')')
-        return fail(parser, "expected ) after the arguments of %s", functions[function].name);
+        return fail(parser, "the expression needs ) after the arguments of %s", functions[function].name);
     if (count < functions[function].least || count > functions[function].most) {
         char what[80];
         snprintf(what, sizeof(what), "%d argument%s for %s, found %d", functions[function].least, functions[function].least == 1 ? "" : "s",
@@ -221,7 +221,9 @@ static bool parse_call(struct expression_parser *parser)
     while (i < FUNCTIONS && (strlen(functions[i].name) != length || memcmp(functions[i].name, parser->p, length) != 0))
         i++;
     if (i == FUNCTIONS)
-        return fail(parser, "expected [TAG], a number, or one of mean, sum, min, max, abs, sqrt, difference, approach, lmtd%s", "");
+        return fail(parser,
+                    "the expression needs [TAG], a number, or one of mean, sum, min, max, abs, sqrt, difference, approach, lmtd here%s",
+                    "");
     parser->p += length;
     return peek(parser) == '(' ? parse_arguments(parser, i) : fail(parser, "expected ( after %s", functions[i].name);
 }
@@ -259,7 +261,7 @@ static bool parse_power(struct expression_parser *parser)
 static bool parse_signed(struct expression_parser *parser)
 {
     if (++parser->depth > MAX_DEPTH)
-        return fail(parser, "brackets and signs are nested more than 32 deep%s", "");
+        return fail(parser, "the expression's brackets and signs are nested more than 32 deep, the maximum%s", "");
     bool negative = peek(parser) == '-', good;
     if (negative)
         parser->p++;
@@ -296,7 +298,7 @@ struct expression *expression_parse(const char *text, int (*find)(const void *ar
     };
     bool good = parse_sum(&parser);
     if (good && peek(&parser))
-        good = fail(&parser, "expected + - * / ^ or the end, found '%.20s'", parser.p);
+        good = fail(&parser, "the expression needs + - * / ^ or the end here, found '%.20s'", parser.p);
     *at = (size_t)(parser.p - text);
     if (!good)
         expression_destroy(&parser.out);

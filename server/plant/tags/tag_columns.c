@@ -88,7 +88,7 @@ static void report_unknown(struct tag_columns *columns, const struct csv_cell *c
     else if (*cell->text)
         header_warning(columns, cell, "unknown column '%.60s' is ignored", cell->text);
     else
-        header_warning(columns, cell, "a column without a name is ignored");
+        header_warning(columns, cell, "a column without a name is ignored: write a name into the header, or delete the column");
 }
 
 /* Reports an error if the tag list has a column twice, under two of its accepted names. csv_open() reports columns with equal
@@ -97,7 +97,8 @@ static void check_doubled(struct tag_columns *columns, const struct csv_cell *ce
 {
     const struct csv_cell *first = before >= 0 ? &columns->csv.header.cells[before] : NULL;
     if (first && strcasecmp(first->text, cell->text) != 0)
-        header_error(columns, cell, "column '%s' means the same as '%s' at column %d", cell->text, first->text, first->column);
+        header_error(columns, cell, "column '%s' means the same as '%s' at column %d: delete one of the two columns", cell->text,
+                     first->text, first->column);
 }
 
 static void find_columns(struct tag_columns *columns)
@@ -131,7 +132,7 @@ void tag_columns_need(struct tag_columns *columns, enum tag_column column)
 {
     const struct csv_cell *first = &columns->csv.header.cells[0];
     if (columns->at[column] < 0)
-        header_error(columns, first, "the header has no column '%s'", tag_column_name(column));
+        header_error(columns, first, "the header of the tag list has no column '%s'", tag_column_name(column));
 }
 
 /* --- cells ------------------------------------------------------------------------------------------------------------------ */

@@ -31,7 +31,8 @@ static void read_source(struct tag_list *list)
     const struct plant *plant = list->plant;
     list->tag->source = cell_reference(&list->columns, COL_SOURCE, "source", plant->sources, plant->source_count, sizeof(*plant->sources));
     if (cell_given(&list->columns, COL_SOURCE) && tag_is_derived(&list->columns)) {
-        cell_error(&list->columns, COL_SOURCE, "Source: must be empty, because the address is an expression");
+        cell_error(&list->columns, COL_SOURCE,
+                   "Source: must be empty, because Address is an expression that computes the tag from other tags");
         list->tag->source = -1;
     }
     if (cell_given(&list->columns, COL_SOURCE) || tag_is_derived(&list->columns))

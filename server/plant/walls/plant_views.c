@@ -19,18 +19,18 @@ bool named_view_id_valid(const char *id)
 
 const char *named_view_title_wrong(const char *title)
 {
-    return strlen(title) >= NAMED_VIEW_TITLE_BYTES ? "the title is longer than 120 bytes" : NULL;
+    return strlen(title) >= NAMED_VIEW_TITLE_BYTES ? "the title of the view is longer than 120 bytes" : NULL;
 }
 
 const char *named_view_address_wrong(const char *address)
 {
     if (strlen(address) >= NAMED_VIEW_ADDRESS_BYTES)
-        return "the address is longer than 2048 bytes";
+        return "the address of the view is longer than 2048 bytes";
     if (address[0] == '#')
-        return "the address must not begin with #";
+        return "the address of the view must not begin with #";
     for (const char *at = address; *at; at++)
         if ((unsigned char)*at <= ' ' || (unsigned char)*at >= 127)
-            return "the address contains a blank, a control character or a non-ASCII letter: percent-encode such characters";
+            return "the address of the view contains a blank, a control character or a non-ASCII letter: percent-encode such characters";
     return NULL;
 }
 

@@ -157,9 +157,9 @@ test('--undo takes only list versions that differ in Place alone, and does nothi
         write('tags.csv.93', 'anything at all\n');
         write('other.csv.1', original);
         writeFileSync(join(other, 'tags.csv.1'), original);
-        for (const [version, why] of [['tags.csv.90', /in more than `Place` \(line \d+\)/],
-            ['tags.csv.91', /does not list the same tags/],
-            ['tags.csv.92', /equals the present tag list/], ['tags.csv.93', /does not list the same tags/],
+        for (const [version, why] of [['tags.csv.90', /line \d+ of this earlier tag list differs in more than the column `Place`/],
+            ['tags.csv.91', /has other tags than the present tag list/],
+            ['tags.csv.92', /equals the present tag list/], ['tags.csv.93', /has other tags than the present tag list/],
             ['other.csv.1', /not an earlier version of/], ['tags.csv', /not an earlier version of/],
             [plant.file, /not an earlier version of/],
             [join(other, 'tags.csv.1'), /not an earlier version of/]]) {
@@ -172,7 +172,7 @@ test('--undo takes only list versions that differ in Place alone, and does nothi
         const locked = spawnSync('flock', [plant.folder, join(BIN, 'plantcast'), 'sensors', 'accept', plant.file, '--undo',
             `tags.csv.${last}`], { encoding: 'utf8' });
         assert.equal(locked.status, 1);
-        assert.match(locked.stderr, /flock \(process \d+\) is using the folder: try again later/);
+        assert.match(locked.stderr, /flock \(process \d+\) is using the plant's folder: try again later/);
         assert.equal(accept('--undo', join(plant.folder, `tags.csv.${last}`)).code, 0);
         assert.equal(readFileSync(tagsFile, 'utf8'), original);
     } finally {
