@@ -120,12 +120,15 @@ static void modbus_destroy(struct source *source)
 static void add_counters(struct modbus_source *modbus, struct counters *counters)
 {
     const struct source *base = &modbus->base;
-    const char *reads = "requests to field devices", *up = "1 while readings come in";
+    const char *reads = "Requests for readings sent to the source's field devices, by result.",
+               *up = "1 while the source (connection to field devices, or replay) delivers readings.";
     modbus->reads_ok = source_counter(base, counters, "reads_total", ",result=\"ok\"", "counter", reads);
     modbus->reads_failed = source_counter(base, counters, "reads_total", ",result=\"failed\"", "counter", reads);
-    modbus->connects = source_counter(base, counters, "connects_total", "", "counter", "connections made to field devices and brokers");
+    modbus->connects = source_counter(base, counters, "connects_total", "", "counter",
+                                      "Connections made to the source's field devices, server or broker.");
     modbus->up = source_counter(base, counters, "up", "", "gauge", up);
-    modbus->host = source_counter(base, counters, "host", "", "gauge", "number of the host that delivers readings: 1 is the first, 0 none");
+    modbus->host = source_counter(base, counters, "host", "", "gauge",
+                                  "Number of the source's host that delivers readings: 1 is the first in `hosts`; 0: none.");
 }
 
 static void add_plan(struct modbus_source *modbus)

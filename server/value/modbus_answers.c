@@ -57,12 +57,11 @@ static void note_busy(struct modbus_source *modbus, const struct read_plan_block
 {
     char more[LOG_PACE_BYTES];
     if (log_pace_take(&modbus_unit_of(modbus, block)->busy_pace, now_ns, more))
-        log_warn(
-            modbus->base.log,
-            "source %s: unit %d: %d registers or bits from address %d on could not be read in %d tries: the device answers with exception "
-            "%d (%s)%s",
-            modbus->base.config->id, block->unit, block->count, block->first, BUSY_TRIES, code, modbus_strerror(MODBUS_ENOBASE + code),
-            more);
+        log_warn(modbus->base.log,
+                 "source %s: unit %d: %d registers or bits from address %d on could not be read in %d tries: the device answers with "
+                 "Modbus exception %d (%s)%s",
+                 modbus->base.config->id, block->unit, block->count, block->first, BUSY_TRIES, code, modbus_strerror(MODBUS_ENOBASE + code),
+                 more);
 }
 
 bool modbus_is_gateway_exception(int code)

@@ -90,8 +90,10 @@ struct modbus_link *modbus_link_create(struct log *log, const struct plant_sourc
     link->null_fd = open("/dev/null", O_RDWR | O_CLOEXEC);
     link->slot_fd = link->null_fd < 0 ? -1 : fcntl(link->null_fd, F_DUPFD_CLOEXEC, 0);
     if (link->slot_fd < 0 || link->slot_fd >= FD_SETSIZE) {
-        log_err(log, "source %s: cannot connect, because all file descriptors below %d are in use: lower --limit connections=N", source->id,
-                FD_SETSIZE);
+        log_err(
+            log,
+            "source %s: cannot connect, because all %d file descriptors that connections can use are in use: lower --limit connections=N",
+            source->id, FD_SETSIZE);
         goto error;
     }
     bool framed = source->transport == TRANSPORT_TCP;

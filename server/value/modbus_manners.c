@@ -104,7 +104,8 @@ static void learn_start(struct modbus_source *modbus)
                  "%lld` to wait from the start",
                  sent_ms, sent_ms);
     else
-        snprintf(found, sizeof(found), "needs %lld ms after connecting for its first answer: waiting for it", answered_ms);
+        snprintf(found, sizeof(found), "needs %lld ms after connecting for its first answer, so the first request waits that long",
+                 answered_ms);
     log_found(modbus, found);
 }
 
@@ -178,12 +179,11 @@ static void log_one_per_connection(struct modbus_source *modbus, int status)
     int64_t wait_ns = modbus->manners.first_wait_ns;
     char found[200];
     snprintf(found, sizeof(found),
-             "answers only after %lld ms, later than `timeout_ms: %d`: reading one block per connection; set `timeout_ms: %lld`",
+             "answers only after %lld ms, later than `timeout_ms: %d`, so each request gets a new connection; set `timeout_ms: %lld`",
              (long long)(wait_ns / 2 / NS_PER_MS), modbus->base.config->timeout_ms, enough_ms(wait_ns / 2));
-    log_found(modbus, status == -ETIMEDOUT && wait_ns > 0
-                          ? found
-                          : "closes the connection after each answer: reading one block per connection; set `close_between_polls: yes` to "
-                            "do so from the start");
+    log_found(modbus, status == -ETIMEDOUT && wait_ns > 0 ? found
+                                                          : "closes the connection after each answer, so each request gets a new "
+                                                            "connection; set `close_between_polls: yes` to do so from the start");
 }
 
 /* Counts connections that the device closed after one answer; after SHORT_CONNECTIONS in a row, switches to one request per
@@ -197,7 +197,7 @@ static void learn_end(struct modbus_source *modbus, int answers, int status)
         log_one_per_connection(modbus, status);
     } else if (answers > 1 && !manners->ends_said) {
         manners->ends_said = true;
-        log_info(modbus->base.log, "source %s: device %s closes connections after some answers: reconnecting each time",
+        log_info(modbus->base.log, "source %s: device %s closes connections after some answers; the daemon connects again each time",
                  modbus->base.config->id, modbus_link_name(modbus->link));
     }
 }

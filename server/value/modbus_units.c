@@ -138,7 +138,7 @@ void modbus_unit_is_down(struct modbus_source *modbus, struct modbus_unit *unit,
     unit->retry_ns = clock_mono_ns() + backoff_next_ns(&unit->backoff, (uint64_t)clock_mono_ns());
     if (modbus->fallen >= GATEWAY_UNITS && any_unit_up(modbus)) {
         lose_gateway(modbus);
-        snprintf(gateway, sizeof(gateway), "the gateway is treated as lost: %d units stopped answering one after the other: %s",
+        snprintf(gateway, sizeof(gateway), "the gateway counts as lost, because %d of its units stopped answering one after the other: %s",
                  modbus->fallen, why);
         why = gateway;
     }

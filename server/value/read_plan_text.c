@@ -69,12 +69,12 @@ static void add_load(struct text *out, const struct read_plan *plan, const struc
     }
     text_add(out, "  load: %.4g requests, %.4g values and %.4g bytes per second", requests, values, bytes);
     if (source->pause_ms > 0)
-        text_add(out, "; the pauses after answers (pause_ms) take %.3g %% of the time", requests * source->pause_ms / 10);
+        text_add(out, "; waiting `pause_ms` after each answer takes %.3g %% of the time", requests * source->pause_ms / 10);
     /* Share of a serial line's capacity. A byte takes a start bit, 8 data bits, the parity bit and the stop bits; a pause of
        3.5 bytes separates frames. */
     if (source->transport == TRANSPORT_RTU) {
         double bits = 1 + 8 + (source->parity != 'N') + source->stop_bits, part = (bytes + 7 * requests) * bits / source->baud;
-        text_add(out, "; %.3g %% of the line's capacity%s", part * 100,
+        text_add(out, "; %.3g %% of the serial line's capacity%s", part * 100,
                  part > 1 ? ": TOO MUCH, so readings will be late: read fewer tags, or read them less often" : "");
     }
     text_add(out, "\n");

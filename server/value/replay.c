@@ -50,7 +50,7 @@ static void read_lane(struct replay *replay, struct replay_lane *lane)
         const char *unit = lane->series.unit;
         if (!unit || !*unit || units_compare(unit, tag->unit, &lane->change) <= UNITS_CONVERT)
             return;
-        snprintf(why, sizeof(why), "the unit '%.60s' in the file cannot be converted to '%.60s'", unit, tag->unit);
+        snprintf(why, sizeof(why), "the unit '%.60s' in the replayed file cannot be converted to '%.60s'", unit, tag->unit);
         series_finish(&lane->series);
     }
     log_err(replay->base.log, "source %s: %s: %s", replay->base.config->id, tag->name, why);
@@ -135,7 +135,8 @@ static void replay_run(struct source *source)
             play_lane(replay, &replay->lanes[i], mono_ns, utc_ns);
     } while (!all_ended(replay) && !stopping(replay, clock_mono_ns() + ROUND_NS));
     if (all_ended(replay)) {
-        log_info(replay->base.log, "source %s: the file %s has ended", replay->base.config->id, replay->base.config->file);
+        log_info(replay->base.log, "source %s: the replay of file %s has ended, so the source delivers no more readings",
+                 replay->base.config->id, replay->base.config->file);
         set_up(replay, false);
     }
 }
@@ -153,8 +154,10 @@ static struct source *replay_create(const struct source *base, struct counters *
 {
     struct replay *replay = mem_new(sizeof(*replay));
     replay->base = *base;
-    replay->samples = source_counter(base, counters, "samples_total", "", "counter", "samples received from replays, brokers and servers");
-    replay->up = source_counter(base, counters, "up", "", "gauge", "1 while readings come in");
+    replay->samples = source_counter(base, counters, "samples_total", "", "counter",
+                                     "Samples (readings) received from the source's server or broker, or replayed from its file.");
+    replay->up =
+        source_counter(base, counters, "up", "", "gauge", "1 while the source (connection to field devices, or replay) delivers readings.");
     replay->lanes = mem_array(base->plant->tag_count, sizeof(*replay->lanes));
     for (size_t i = 0; i < base->plant->tag_count; i++)
         if (base->plant->tags[i].source == base->index)

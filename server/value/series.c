@@ -218,12 +218,12 @@ static bool read_wide(struct series *series, struct series_lines *lines, size_t 
         if (lines->count == 1 && lines->cells[0].length == 0)
             continue;
         if (has_surplus(lines, columns)) {
-            snprintf(why, 200, "%s:%d: more cells than in the first line", lines->path, lines->number);
+            snprintf(why, 200, "%s:%d: this line has more cells than the first line", lines->path, lines->number);
             return false;
         }
         bool short_line = lines->count <= column || lines->count <= time_column;
         if (short_line || !tick(clock, &lines->cells[time_column], &time_s)) {
-            snprintf(why, 200, "%s:%d: expected a time not before that of the line above", lines->path, lines->number);
+            snprintf(why, 200, "%s:%d: expected a time not before that of the previous line", lines->path, lines->number);
             return false;
         }
         if (lines->cells[column].length == 0) /* no value at this time, because the cell is empty */
@@ -297,13 +297,13 @@ static bool read_values(struct series *series, struct series_lines *lines, const
         if (lines->count == 1 && lines->cells[0].length == 0)
             continue;
         if (lines->count <= header->time || lines->count <= header->tag || lines->count <= header->value || has_surplus(lines, columns)) {
-            snprintf(why, 200, "%s:%d: expected as many cells as in the first line", lines->path, lines->number);
+            snprintf(why, 200, "%s:%d: expected as many cells in this line as in the first line", lines->path, lines->number);
             return false;
         }
         if (!is(&lines->cells[header->tag], series->name, strlen(series->name)))
             continue;
         if (!tick(&own, &lines->cells[header->time], &time_s)) {
-            snprintf(why, 200, "%s:%d: expected a time not before the last one of %s", lines->path, lines->number, series->name);
+            snprintf(why, 200, "%s:%d: expected a time not before the previous value of %s", lines->path, lines->number, series->name);
             return false;
         }
         if (!value_of(&lines->cells[header->value], &value)) {

@@ -262,17 +262,18 @@ test('--check names each mistake in an MQTT source of the plant file', options, 
     };
     assert.match(said('payload: json, value: "a..b"', TAGS.number), /plant\.yaml:9:\d+: error: value: 'a\.\.b': descendants/);
     const refused = [['a[*].v', 'a wildcard selects'], ['a[0:2].v', 'a slice selects'], ['a..v', 'descendants'],
-        ["a[?id!='x'].v", 'expected ==']];
+        ["a[?id!='x'].v", 'needs ==']];
     for (const [path, why] of refused)
         assert.match(said('payload: json, topic: a', [`TI-1,#${path},,,,,,,,,,,,,`]),
             new RegExp(`tags\\.csv:2:6: error: Address: .*${why}`), path);
     assert.match(said('time: ts', TAGS.number), /time: allowed only with payload: json/);
     assert.match(said('session: persistent', TAGS.number), /would look fresh[^]*requires client_id/);
-    assert.match(said('topic: "plant/+/{tag}"', TAGS.number), /topic: 'plant\/\+\/\{tag\}': wildcards \(\+ and #\) match many topics/);
-    assert.match(said('topic: "plant/{name}"', TAGS.number), /expected \{tag\}, \{asset\}, \{group\} or \{address\}/);
-    assert.match(said('qos: 1', TAGS.number), /tags\.csv:3:6: error: Address: '': expected a topic here, or the key `topic` in the source/);
-    assert.match(said('topic: "a/{tag}"', [TAGS.json[0]]), /a path after # is not allowed with payload: number/);
+    assert.match(said('topic: "plant/+/{tag}"', TAGS.number), /topic: 'plant\/\+\/\{tag\}': the MQTT topic has a wildcard \(\+ or #\)/);
+    assert.match(said('topic: "plant/{name}"', TAGS.number), /may contain only \{tag\}, \{asset\}, \{group\} and \{address\} in braces/);
+    assert.match(said('qos: 1', TAGS.number), /tags\.csv:3:6: error: Address: '': this tag has no MQTT topic: write one/);
+    assert.match(said('topic: "a/{tag}"', [TAGS.json[0]]), /a path after # is not allowed with `payload: number`/);
     assert.match(said('topic: "a/{tag}", rebirth: yes', TAGS.number), /rebirth: allowed only with payload: sparkplug/);
-    assert.match(said('payload: sparkplug', ['TI-1,U100#TI-1,,,,,,,,,,,,,']), /expected GROUP\/NODE#METRIC or GROUP\/NODE\/DEVICE#METRIC/);
+    assert.match(said('payload: sparkplug', ['TI-1,U100#TI-1,,,,,,,,,,,,,']),
+        /expected a Sparkplug address GROUP\/NODE#METRIC or GROUP\/NODE\/DEVICE#METRIC/);
     assert.match(said('baud: 9600', TAGS.number), /baud: has no effect for an mqtt source/);
 });

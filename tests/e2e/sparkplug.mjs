@@ -150,7 +150,7 @@ test('a lost message leaves no value Good; the node is asked for a rebirth only 
         if (rebirth === 'no')
             for (const [name, value] of [['TI-2', -7.5], ['PI-1', 5], ['XS-1', 1]])
                 await until(name, { quality_name: 'Uncertain_LastUsableValue', value });
-        await plant.daemon.line(/U100\/edge: Sparkplug messages lost: received sequence number 5, expected 2/);
+        await plant.daemon.line(/node U100\/edge: Sparkplug messages were lost: received sequence number 5, expected 2/);
         if (rebirth === 'yes')
             await waitFor('a request for its birth', () => node.births > births);
         await until('TI-1', { ...good, value: rebirth === 'no' ? 30 : 20.5 });
@@ -177,7 +177,8 @@ test('a node born before the daemon connected is read once its birth certificate
     await stranger.leave();
     await sleep(200);
     node.publishNodeData({ timestamp: Date.now(), metrics: [{ name: 'Inlet/Temperature', type: 'Double', value: 30 }] });
-    await plant.daemon.line(/U100\/edge: values ignored: no Sparkplug birth certificate yet; `rebirth: yes` requests it/);
+    await plant.daemon.line(new RegExp('node U100/edge: values ignored, because the node has not sent a Sparkplug birth certificate ' +
+        'yet; `rebirth: yes` requests it'));
     await until('TI-1', { quality_name: 'Bad_WaitingForInitialData' });
     await plant.daemon.stop();
     await plant.run('payload: sparkplug, rebirth: yes', ROWS);

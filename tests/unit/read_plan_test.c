@@ -229,7 +229,7 @@ TEST(a_plan_is_put_in_words)
                                  "    hr:2 float32 ABCD t1\n"
                                  "  unit 1, function 3, hr:10 to 11: 2 registers every 500 ms, 1 tag\n"
                                  "    hr:10 float32 ABCD t2\n"
-                                 "  load: 6 requests, 8 values and 154 bytes per second; the pauses after answers (pause_ms) take 6 % "
+                                 "  load: 6 requests, 8 values and 154 bytes per second; waiting `pause_ms` after each answer takes 6 % "
                                  "of the time\n");
     text_finish(&text);
     plant->sources[0].transport = TRANSPORT_RTU;
@@ -240,8 +240,9 @@ TEST(a_plan_is_put_in_words)
     /* Expected load of the serial line: (3 requests x 13 + 14 bytes of values) x 2 per second = 106 bytes of 10 bits each. The
        pauses that Modbus demands take as long as 7 bytes per request. */
     assert_non_null(strstr(text.at, "source a: /dev/ttyS0, 1200 baud, parity N, 1 stop bit: 4 tags"));
-    assert_non_null(strstr(text.at, "106 bytes per second; the pauses after answers (pause_ms) take 6 % of the time; 123 % of the line's "
-                                    "capacity: TOO MUCH"));
+    assert_non_null(strstr(text.at,
+                           "106 bytes per second; waiting `pause_ms` after each answer takes 6 % of the time; 123 % of the serial line's "
+                           "capacity: TOO MUCH"));
     text_finish(&text);
     mem_free(plant->sources[0].kind);
     plant->sources[0].kind = mem_strdup("replay");

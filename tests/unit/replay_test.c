@@ -188,8 +188,9 @@ CASE(commas_in_numbers_are_refused)
 {
     static const char *const files[] = { "t_s;a;b\n0;21,5;3\n", "t_s\ta\tb\n0\t21,5\t3\n", "t_s,a,b\n0,1,234,3\n",
                                          "Tag;Time;Value\na;2026-10-25T00:00:00Z;21,5\n", "0;temp;x;a;21,5\n" };
-    static const char *const errors[] = { "2: a: expected a number", "2: a: expected a number", "2: more cells than in the first line",
-                                          "2: a: expected a number", "1: x/a: expected a number" };
+    static const char *const errors[] = { "2: a: expected a number", "2: a: expected a number",
+                                          "2: this line has more cells than the first line", "2: a: expected a number",
+                                          "1: x/a: expected a number" };
     struct series series;
     char why[200];
     bool found;

@@ -63,7 +63,7 @@ static void on_topic_refused(void *arg, const char *topic)
 {
     struct mqtt_source *mqtt = arg;
     const struct mqtt_message message = { .topic = topic };
-    mqtt_refuse(mqtt, &message, "the broker refused the subscription");
+    mqtt_refuse(mqtt, &message, "the MQTT broker refused the subscription to the source's topics");
 }
 
 static void ask_rebirth(void *arg, const char *group, const char *node)
@@ -95,7 +95,7 @@ static int run_session(struct mqtt_source *mqtt, char why[200])
         mqtt_log_left_out(mqtt, now_ns);
         status = mqtt_client_serve(mqtt->client, mqtt->base.stop_fd, now_ns + NS_PER_S, why);
         if (status == 0 && !mqtt->subscribed && now_ns > deadline_ns) {
-            snprintf(why, 200, "the broker does not answer");
+            snprintf(why, 200, "the MQTT broker does not answer");
             status = -ETIMEDOUT;
         }
         if (status == 0 && mqtt->sparkplug && mqtt->subscribed && now_ns > tick_ns) {
@@ -137,18 +137,25 @@ static void mqtt_destroy(struct source *source)
 static void add_counters(struct mqtt_source *mqtt, struct counters *counters)
 {
     const struct source *base = &mqtt->base;
-    const char *messages = "messages from brokers";
+    const char *messages = "Messages received from the source's MQTT broker, by result.";
     mqtt->messages_ok = source_counter(base, counters, "messages_total", ",result=\"ok\"", "counter", messages);
     mqtt->messages_refused = source_counter(base, counters, "messages_total", ",result=\"refused\"", "counter", messages);
-    mqtt->samples = source_counter(base, counters, "samples_total", "", "counter", "samples received from replays, brokers and servers");
-    mqtt->connects = source_counter(base, counters, "connects_total", "", "counter", "connections made to field devices and brokers");
+    mqtt->samples = source_counter(base, counters, "samples_total", "", "counter",
+                                   "Samples (readings) received from the source's server or broker, or replayed from its file.");
+    mqtt->connects = source_counter(base, counters, "connects_total", "", "counter",
+                                    "Connections made to the source's field devices, server or broker.");
     if (base->config->mqtt.payload == MQTT_SPARKPLUG) {
-        mqtt->gaps = source_counter(base, counters, "gaps_total", "", "counter", "Sparkplug messages out of sequence");
-        mqtt->historical = source_counter(base, counters, "historical_total", "", "counter", "historical Sparkplug values ignored");
-        mqtt->rebirths = source_counter(base, counters, "rebirths_total", "", "counter", "requests for Sparkplug birth certificates");
+        mqtt->gaps = source_counter(base, counters, "gaps_total", "", "counter",
+                                    "Sparkplug messages out of sequence, so that messages before them were lost.");
+        mqtt->historical = source_counter(base, counters, "historical_total", "", "counter",
+                                          "Sparkplug values ignored because the node marked them as historical.");
+        mqtt->rebirths = source_counter(base, counters, "rebirths_total", "", "counter",
+                                        "Requests sent to Sparkplug nodes for their birth certificate, which lists the node's metrics.");
     }
-    mqtt->up = source_counter(base, counters, "up", "", "gauge", "1 while readings come in");
-    mqtt->host = source_counter(base, counters, "host", "", "gauge", "number of the host that delivers readings: 1 is the first, 0 none");
+    mqtt->up =
+        source_counter(base, counters, "up", "", "gauge", "1 while the source (connection to field devices, or replay) delivers readings.");
+    mqtt->host = source_counter(base, counters, "host", "", "gauge",
+                                "Number of the source's host that delivers readings: 1 is the first in `hosts`; 0: none.");
 }
 
 /* Returns the MQTT client id from the plant file, or a random one; the caller frees it. Ids must be unique, because the broker

@@ -136,7 +136,7 @@ void mqtt_take_message(struct mqtt_source *mqtt, const struct mqtt_message *mess
     const struct mqtt_topic *topic = mqtt->sparkplug ? NULL : mqtt_topics_find(&mqtt->topics, message->topic);
     char why[200];
     if (!topic && !mqtt->sparkplug) {
-        mqtt_refuse(mqtt, message, "no tag uses this topic");
+        mqtt_refuse(mqtt, message, "no tag of the source uses this topic");
         return;
     }
     stamped_writer_begin(&mqtt->writer, clock_mono_ns(), clock_utc_ns());

@@ -135,7 +135,7 @@ static enum mqtt_found refuse_selection(const struct json_selected *found, const
 {
     const char *tag = reader->tag, *path = reader->path;
     if (found->count > 1) {
-        snprintf(why, 200, "%.40s: %.60s selects %zu values; expected one", tag, path, found->count);
+        snprintf(why, 200, "tag %.40s: the path %.60s selects %zu values in the message; expected one", tag, path, found->count);
         return refuse(out, QUALITY_BAD_TOO_MANY_MATCHES);
     }
     if (!found->foreign)

@@ -136,8 +136,8 @@ static void ask(struct sparkplug *sparkplug, struct sparkplug_node *node, int64_
         return;
     node->is_wanted = false;
     node->asked_ns = now_ns;
-    log_info(sparkplug->params.log, "source %s: %s/%s: requesting the Sparkplug birth certificate", sparkplug->params.source, node->group,
-             node->name);
+    log_info(sparkplug->params.log, "source %s: node %s/%s: requesting the Sparkplug birth certificate, which lists the node's metrics",
+             sparkplug->params.source, node->group, node->name);
     sparkplug->params.ask(sparkplug->params.arg, node->group, node->name);
 }
 
@@ -356,7 +356,7 @@ static void follow(struct sparkplug *sparkplug, struct sparkplug_node *node, con
         return;
     if (sparkplug->params.gaps)
         counter_inc(sparkplug->params.gaps, 1);
-    log_warn(sparkplug->params.log, "source %s: %s/%s: Sparkplug messages lost: received sequence number %d, expected %d",
+    log_warn(sparkplug->params.log, "source %s: node %s/%s: Sparkplug messages were lost: received sequence number %d, expected %d",
              sparkplug->params.source, node->group, node->name, seq, wanted);
     doubt_all(sparkplug, node);
     ask(sparkplug, node, sparkplug->params.writer->mono_ns);
@@ -404,8 +404,9 @@ static bool refuse_unborn(struct sparkplug *sparkplug, struct sparkplug_node *no
 {
     ask(sparkplug, node, sparkplug->params.writer->mono_ns);
     if (!node->told)
-        log_warn(sparkplug->params.log, "source %s: %s/%s: values ignored: no Sparkplug birth certificate yet%s", sparkplug->params.source,
-                 node->group, node->name, sparkplug->params.rebirth ? "" : "; `rebirth: yes` requests it");
+        log_warn(sparkplug->params.log,
+                 "source %s: node %s/%s: values ignored, because the node has not sent a Sparkplug birth certificate yet%s",
+                 sparkplug->params.source, node->group, node->name, sparkplug->params.rebirth ? "" : "; `rebirth: yes` requests it");
     node->told = true;
     snprintf(why, 200, "the message came before the node's Sparkplug birth certificate");
     return false;
@@ -420,7 +421,7 @@ static bool take_node_birth(struct sparkplug *sparkplug, const struct said *said
     node->told = node->is_wanted = false;
     node->bd_seq = sparkplug_bd_seq(payload);
     node->next_seq = (payload->seq + 1) % 256;
-    log_info(sparkplug->params.log, "source %s: %s/%s: online (Sparkplug birth certificate received)", sparkplug->params.source,
+    log_info(sparkplug->params.log, "source %s: node %s/%s: online (Sparkplug birth certificate received)", sparkplug->params.source,
              node->group, node->name);
     return said->topic == SIZE_MAX || take_birth(sparkplug, node, said->topic, payload, why);
 }
@@ -432,11 +433,11 @@ static bool take_node_death(struct sparkplug *sparkplug, struct sparkplug_node *
         return true;
     if (bd_seq >= 0 && node->bd_seq >= 0 && bd_seq != node->bd_seq) {
         log_info(sparkplug->params.log,
-                 "source %s: %s/%s: an old Sparkplug death certificate (bdSeq %lld; the birth certificate has %lld) is ignored",
+                 "source %s: node %s/%s: an old Sparkplug death certificate (bdSeq %lld; the birth certificate has %lld) is ignored",
                  sparkplug->params.source, node->group, node->name, (long long)bd_seq, (long long)node->bd_seq);
         return true;
     }
-    log_warn(sparkplug->params.log, "source %s: %s/%s: offline (Sparkplug death certificate received)", sparkplug->params.source,
+    log_warn(sparkplug->params.log, "source %s: node %s/%s: offline (Sparkplug death certificate received)", sparkplug->params.source,
              node->group, node->name);
     node_dies(sparkplug, node, SIZE_MAX);
     return true;
@@ -452,7 +453,7 @@ static bool take_in_order(struct sparkplug *sparkplug, const struct said *said, 
     if (said->verb == DBIRTH)
         return take_birth(sparkplug, said->node, said->topic, payload, why);
     if (said->verb == DDEATH) {
-        log_warn(sparkplug->params.log, "source %s: %s: offline (Sparkplug death certificate received)", sparkplug->params.source,
+        log_warn(sparkplug->params.log, "source %s: device %s: offline (Sparkplug death certificate received)", sparkplug->params.source,
                  sparkplug->params.topics->at[said->topic].name);
         topic_dies(sparkplug, said->topic);
         return true;
@@ -466,7 +467,7 @@ bool sparkplug_take(struct sparkplug *sparkplug, const struct mqtt_message *mess
 {
     struct sparkplug_payload payload;
     struct said said;
-    snprintf(why, 200, "not a topic of Sparkplug B");
+    snprintf(why, 200, "the topic is not a topic of Sparkplug B");
     if (!read_topic(sparkplug, message->topic, &said))
         return false;
     if (said.verb == OTHER) /* NCMD and DCMD: commands that other programs send to nodes */

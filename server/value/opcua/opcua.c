@@ -80,8 +80,8 @@ static void on_refused(void *arg, size_t index, uint32_t status, const char *why
         stamped_writer_add_bad(&opcua->writer, node->tags[i], status);
     stamped_writer_end(&opcua->writer);
     if (++opcua->refusals_said <= REFUSALS_SAID)
-        log_warn(opcua->base.log, "source %s: nsu=%.80s;%.80s was refused: %s%s", opcua->base.config->id, node->name_space, node->id, why,
-                 opcua->refusals_said == REFUSALS_SAID ? "; further refusals are not logged" : "");
+        log_warn(opcua->base.log, "source %s: the OPC UA server refuses to read node nsu=%.80s;%.80s: %s%s", opcua->base.config->id,
+                 node->name_space, node->id, why, opcua->refusals_said == REFUSALS_SAID ? "; further refusals are not logged" : "");
 }
 
 /* Logs that the server refuses a deadband that the tag list states. A refused deadband of the plant file is not logged, because it
@@ -139,7 +139,8 @@ static int make_up(struct opcua_source *opcua, struct opcua_client *client, int6
         return 0;
     *next_ns = now_ns + READ_NS;
     if (log_pace_take(&opcua->missed_pace, now_ns, more))
-        log_warn(opcua->base.log, "source %s: notifications from the server were lost: reading all nodes%s", opcua->base.config->id, more);
+        log_warn(opcua->base.log, "source %s: notifications from the OPC UA server were lost, so all nodes are read again%s",
+                 opcua->base.config->id, more);
     return opcua_client_read(client, opcua->base.stop_fd, now_ns + SUBSCRIBE_NS, why);
 }
 
@@ -208,11 +209,16 @@ static struct source *opcua_create(const struct source *base, struct counters *c
 {
     struct opcua_source *opcua = mem_new(sizeof(*opcua));
     opcua->base = *base;
-    opcua->samples = source_counter(base, counters, "samples_total", "", "counter", "samples received from replays, brokers and servers");
-    opcua->connects = source_counter(base, counters, "connects_total", "", "counter", "connections made to field devices and brokers");
-    opcua->refused = source_counter(base, counters, "nodes_refused", "", "gauge", "nodes that the OPC UA server refuses to read");
-    opcua->up = source_counter(base, counters, "up", "", "gauge", "1 while readings come in");
-    opcua->host = source_counter(base, counters, "host", "", "gauge", "number of the host that delivers readings: 1 is the first, 0 none");
+    opcua->samples = source_counter(base, counters, "samples_total", "", "counter",
+                                    "Samples (readings) received from the source's server or broker, or replayed from its file.");
+    opcua->connects = source_counter(base, counters, "connects_total", "", "counter",
+                                     "Connections made to the source's field devices, server or broker.");
+    opcua->refused =
+        source_counter(base, counters, "nodes_refused", "", "gauge", "Nodes (tags) that the source's OPC UA server refuses to read.");
+    opcua->up =
+        source_counter(base, counters, "up", "", "gauge", "1 while the source (connection to field devices, or replay) delivers readings.");
+    opcua->host = source_counter(base, counters, "host", "", "gauge",
+                                 "Number of the source's host that delivers readings: 1 is the first in `hosts`; 0: none.");
     opcua_nodes_init(&opcua->nodes, base->plant, base->index);
     opcua->wrong = mem_array(opcua->nodes.count, sizeof(*opcua->wrong));
     stamped_writer_init(&opcua->writer, base->plant, base->store);

@@ -188,7 +188,7 @@ int opcua_browse(struct opcua_client *client, void (*found)(void *arg, const str
             status = read_variable(&browse, i, why);
     }
     if (status == 0 && browse.count == MAX_NODES) {
-        snprintf(why, 200, "the server has more than %d nodes; the list is incomplete", MAX_NODES);
+        snprintf(why, 200, "the OPC UA server has more than %d nodes; the list is incomplete", MAX_NODES);
         status = -E2BIG;
     }
     for (size_t i = 0; i < browse.count; i++) {

@@ -23,7 +23,7 @@ int opcua_wait(struct opcua_client *client, const bool *done, int stop_fd, int64
         if (wait_for(-1, 0, stop_fd, 0) == -ECANCELED)
             return -ECANCELED;
         if (left_ns <= 0) {
-            snprintf(why, 200, "the server does not answer%s%.150s", *client->said ? ": " : "", client->said);
+            snprintf(why, 200, "the OPC UA server does not answer%s%.150s", *client->said ? ": " : "", client->said);
             return -ETIMEDOUT;
         }
         UA_StatusCode status = UA_Client_run_iterate(client->library, (UA_UInt32)((left_ns < SLICE_NS ? left_ns : SLICE_NS) / NS_PER_MS));

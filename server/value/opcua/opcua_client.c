@@ -38,7 +38,7 @@ static void on_silence(UA_Client *library)
 {
     struct opcua_client *client = UA_Client_getContext(library);
     client->lost = true;
-    snprintf(client->said, sizeof(client->said), "nothing received from the server");
+    snprintf(client->said, sizeof(client->said), "nothing received from the OPC UA server");
 }
 
 static void on_subscription_silence(UA_Client *library, UA_UInt32 subscription, void *context)
@@ -155,11 +155,12 @@ static UA_EndpointDescription *choose(const struct opcua_client *client, UA_Endp
             best = &endpoints[i];
     }
     if (!best && any)
-        snprintf(why, 200, "the server does not accept %s", client->source->login ? "user and password"
-                                                     : client->security.user_certificate.length > 0 ? "user by certificate"
-                                                                                                     : "anonymous users");
+        snprintf(why, 200, "the OPC UA server does not accept %s",
+                 client->source->login                          ? "user and password"
+                 : client->security.user_certificate.length > 0 ? "user by certificate"
+                                                                : "anonymous users");
     else if (!best)
-        snprintf(why, 200, "none of the server's %zu endpoints has %s", count,
+        snprintf(why, 200, "none of the OPC UA server's %zu endpoints has %s", count,
                  wanted == OPCUA_NONE ? "security: none" : "an allowed security policy with SignAndEncrypt");
     return best;
 }
@@ -270,13 +271,13 @@ int opcua_client_serve(struct opcua_client *client, int stop_fd, int64_t deadlin
 {
     int status = opcua_wait(client, &client->lost, stop_fd, deadline_mono_ns, why);
     if (status == 0) {
-        snprintf(why, 200, "the subscription has ended (%.150s)", client->said);
+        snprintf(why, 200, "the OPC UA server ended the subscription (%.150s)", client->said);
         return -ECONNRESET;
     }
     UA_SessionState session;
     UA_Client_getState(client->library, NULL, &session, NULL);
     if (status == -ETIMEDOUT && session != UA_SESSIONSTATE_ACTIVATED) {
-        snprintf(why, 200, "the session has ended%s%.150s", *client->said ? ": " : "", client->said);
+        snprintf(why, 200, "the session with the OPC UA server has ended%s%.150s", *client->said ? ": " : "", client->said);
         return -ECONNRESET;
     }
     return status == -ETIMEDOUT ? 0 : status;

@@ -91,9 +91,9 @@ static bool read_pair(const char *certificate_path, const char *key_path, UA_Byt
     *key = taken(der, bytes);
     bool fits = pair && X509_check_private_key(*out, pair) == 1;
     if (!pair)
-        snprintf(why, 200, "%.120s has no private key, or one protected by a passphrase", key_path);
+        snprintf(why, 200, "the key file %.120s has no private key, or one protected by a passphrase", key_path);
     else if (!fits)
-        snprintf(why, 200, "%.80s is not the key of %.80s", key_path, certificate_path);
+        snprintf(why, 200, "%.80s is not the private key of certificate %.80s", key_path, certificate_path);
     EVP_PKEY_free(pair);
     ERR_clear_error();
     return fits;
@@ -161,7 +161,7 @@ static bool trust_folder(struct opcua_security *security, const char *path, char
         mem_free(file);
     }
     if (good && count == 0)
-        snprintf(why, 200, "%.120s contains no certificate: no server is trusted", path);
+        snprintf(why, 200, "%.120s contains no certificate, so no OPC UA server is trusted", path);
     if (folder)
         closedir(folder);
     return good && count > 0;
@@ -184,7 +184,7 @@ bool opcua_security_init(struct opcua_security *security, const struct plant_opc
         good = read_pair(config->user_certificate, config->user_key, &security->user_certificate, &security->user_key, &user, why);
     security->application_uri = good ? application_uri_of(ours) : NULL;
     if (good && !security->application_uri) {
-        snprintf(why, 200, "%.120s has no application URI among its alternative names", config->certificate);
+        snprintf(why, 200, "the certificate %.120s has no application URI among its alternative names", config->certificate);
         good = false;
     }
     X509_free(ours);
@@ -241,10 +241,10 @@ static UA_StatusCode check_leaf(const struct opcua_security *security, X509 *lea
     EVP_PKEY *key = X509_get0_pubkey(leaf);
     UA_StatusCode status = UA_STATUSCODE_GOOD;
     if (!key || EVP_PKEY_base_id(key) != EVP_PKEY_RSA || EVP_PKEY_bits(key) < KEY_BITS) {
-        snprintf(why, 200, "the server's certificate has no RSA key of %d bits or more", KEY_BITS);
+        snprintf(why, 200, "the OPC UA server's certificate has no RSA key of %d bits or more", KEY_BITS);
         status = UA_STATUSCODE_BADCERTIFICATEPOLICYCHECKFAILED;
     } else if (!is_for(leaf, security->server_name)) {
-        snprintf(why, 200, "the server's certificate is not for %.100s (set server_name to the name in the certificate)",
+        snprintf(why, 200, "the OPC UA server's certificate is not for %.100s: set `server_name` to the name in the certificate",
                  security->server_name);
         status = UA_STATUSCODE_BADCERTIFICATEHOSTNAMEINVALID;
     }
@@ -258,7 +258,8 @@ UA_StatusCode opcua_security_check(const struct opcua_security *security, UA_Byt
     X509 *leaf = chain->length > 0 ? d2i_X509(NULL, &at, (long)chain->length) : NULL;
     STACK_OF(X509) *others = sk_X509_new_null();
     if (!leaf || !security->trusted) {
-        snprintf(why, 200, leaf ? "no server is trusted (`trust` is empty)" : "the server sent no certificate");
+        snprintf(why, 200,
+                 leaf ? "no OPC UA server is trusted, because the folder `trust` is empty" : "the OPC UA server sent no certificate");
         sk_X509_free(others);
         X509_free(leaf);
         ERR_clear_error();

@@ -191,7 +191,7 @@ static int create_items(struct opcua_client *client, const size_t *batch, UA_Mon
                                                                           opcua_on_answer, client, NULL);
     int status = opcua_call_end(client, sent, stop_fd, deadline_mono_ns, why);
     if (status == 0 && response.resultsSize != count) {
-        snprintf(why, 200, "the server answered for only %zu of %zu nodes", response.resultsSize, count);
+        snprintf(why, 200, "the OPC UA server answered for only %zu of %zu nodes", response.resultsSize, count);
         status = -EPROTO;
     }
     for (size_t i = 0; status == 0 && i < count; i++)
@@ -273,7 +273,7 @@ static int read_batch(struct opcua_client *client, const size_t *batch, UA_ReadV
                    &(struct opcua_exchange){ &request, &UA_TYPES[UA_TYPES_READREQUEST], &response, &UA_TYPES[UA_TYPES_READRESPONSE] },
                    stop_fd, deadline_mono_ns, why);
     if (status == 0 && response.resultsSize != count) {
-        snprintf(why, 200, "the server answered for only %zu of %zu nodes", response.resultsSize, count);
+        snprintf(why, 200, "the OPC UA server answered for only %zu of %zu nodes", response.resultsSize, count);
         status = -EPROTO;
     }
     for (size_t i = 0; status == 0 && i < count; i++)

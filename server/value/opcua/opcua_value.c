@@ -40,16 +40,17 @@ static bool read_number(const UA_Variant *variant, int element, struct stamped_v
 {
     bool is_scalar = UA_Variant_isScalar(variant);
     if (!variant->type)
-        snprintf(why, 200, "the node has no value (null)");
+        snprintf(why, 200, "the OPC UA node has no value (null)");
     else if (is_scalar != (element < 0))
         snprintf(why, 200,
-                 is_scalar ? "the value is not an array; remove the element in brackets from the address"
-                           : "the value is an array; write the number of an element in brackets in front of the address, such as [0]");
+                 is_scalar
+                     ? "the node's value is not an array; remove the element in brackets from the address"
+                     : "the node's value is an array; write the number of an element in brackets in front of the address, such as [0]");
     else if (!is_scalar && (size_t)element >= variant->arrayLength)
-        snprintf(why, 200, "the array has %zu elements", variant->arrayLength);
+        snprintf(why, 200, "the node's array has only %zu elements", variant->arrayLength);
     else if (!number_of(variant->type, (const char *)variant->data + (is_scalar ? 0 : (size_t)element) * variant->type->memSize,
                         &out->value))
-        snprintf(why, 200, "the type of the value is not a number");
+        snprintf(why, 200, "the type of the node's value is not a number");
     else
         return true;
     bool is_short = variant->type && !is_scalar && element >= 0 && (size_t)element >= variant->arrayLength;

@@ -115,7 +115,7 @@ test('a server with a long publishing interval is reported, and its loss is noti
     await plant.said(/the server publishes changes every 60000 ms instead of every 100 ms/);
     server.freeze();
     const frozen = performance.now();
-    await plant.said(/no readings \(the subscription has ended \(nothing received from the server\)\)/);
+    await plant.said(/no readings \(the OPC UA server ended the subscription \(nothing received from the OPC UA server\)\)/);
     promise(t, 'until the frozen server is missed', performance.now() - frozen, 20000);
     server.thaw();
 });

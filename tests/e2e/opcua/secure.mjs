@@ -39,7 +39,7 @@ test('users sign in by password or certificate, and refusals name the reason', o
     await until('TI-1', good);
     await plant.daemon.stop();
     await start(server.security());
-    await said(/no readings \(the server does not accept anonymous users/);
+    await said(/no readings \(the OPC UA server does not accept anonymous users/);
     await plant.daemon.stop();
     await start('security: none');
     await said(/no readings \(/);
@@ -52,7 +52,7 @@ test('invalid certificates are refused by name, the server\'s and ours', options
     makeCertificate(folder, 'stranger', { ownKey: true });
     const cases = [['server', ['stranger'], /BadCertificateUntrusted: the server's certificate/],
         ['old', ['old'], /BadCertificateTimeInvalid: the server's certificate: certificate has expired/],
-        ['elsewhere', ['elsewhere'], /BadCertificateHostNameInvalid: the server's certificate is not for 127\.0\.0\.1/]];
+        ['elsewhere', ['elsewhere'], /BadCertificateHostNameInvalid: the OPC UA server's certificate is not for 127\.0\.0\.1/]];
     for (const [certificate, trusted, pattern] of cases) {
         await server.restart({ certificate });
         server.trust(...trusted);
@@ -68,7 +68,7 @@ test('invalid certificates are refused by name, the server\'s and ours', options
     server.trust('server');
     await server.restart({ trustsAll: false });
     await start(server.security('', 'stranger'));
-    await said(/no readings \((Bad\w+|the server does not answer)/);
+    await said(/no readings \((Bad\w+|the OPC UA server does not answer)/);
     await plant.daemon.stop();
     await start(server.security('', 'nothing'));
     await said(/no readings \(.*nothing\.crt cannot be read/);

@@ -44,8 +44,8 @@ test('values, status codes and times arrive unchanged, and nothing is ever writt
     await until('T-5', { quality_name: 'Bad' });
     await until('TEXT', { quality_name: 'Bad_ConfigurationError' });
     await until('GONE', { quality_name: 'Bad' });
-    await said(/nsu=urn:test:plant;1;s=Gone was refused: BadNodeIdUnknown/);
-    await said(/s=Text: the type of the value is not a number/);
+    await said(/refuses to read node nsu=urn:test:plant;1;s=Gone: BadNodeIdUnknown/);
+    await said(/s=Text: the type of the node's value is not a number/);
     for (const [status, name] of [[0x40930000, 'Uncertain_SensorNotAccurate'], [0x00960000, 'Good'], [0x808c0000, 'Bad_SensorFailure'],
         [0x408f0000, 'Uncertain_NoCommunicationLastUsableValue'], [0x80310000, 'Bad_NoCommunication']]) {
         await server.set('TI-1', 42, { status });
@@ -99,7 +99,7 @@ test('a lost notification is noticed, and all nodes are read', options, async ()
     await server.set('TI-2', 62);
     await until('TI-2', { ...good, value: 62 });
     await until('TI-1', { ...good, value: 61 });
-    await said(/source plc: notifications from the server were lost: reading all nodes/);
+    await said(/source plc: notifications from the OPC UA server were lost, so all nodes are read again/);
     assert.equal(await plant.metric('connects_total{source="plc"}'), 1);
 });
 
@@ -223,10 +223,10 @@ test('--check names each mistake in an OPC UA source of the plant file', options
     assert.match(refused('security: none, deadband: 1, deadband_percent: 1'), /expected deadband or deadband_percent/);
     assert.match(refused('security: none, topic: x'), /topic: has no effect for an opcua source/);
     assert.match(refused('security: none', 'A,ns=2;s=X,,,,,,,,,,,,,'), /namespace numbers can change/);
-    assert.match(refused('security: none', 'A,s=X,,,,,,,,,,,,,'), /or the key namespace in the source/);
+    assert.match(refused('security: none', 'A,s=X,,,,,,,,,,,,,'), /or set the key `namespace` of the source/);
     assert.match(refused('security: none, namespace: urn:x', 'A,q=X,,,,,,,,,,,,,'),
         /tags\.csv:2:3: error: Address: 'q=X': expected nsu=URI/);
-    assert.match(refused('security: none', 'A,[x]nsu=urn:x;i=5,,,,,,,,,,,,,'), /expected an element/);
+    assert.match(refused('security: none', 'A,[x]nsu=urn:x;i=5,,,,,,,,,,,,,'), /expected the number of an array element/);
     const opc = (type, deadband) => refused('security: none', `A,nsu=urn:x;s=A,${type},,,,,,,,,,,,,${deadband}`, ',OPC Deadband');
     for (const deadband of ['-1', 'x', '101%', '%', '1 bar'])
         assert.match(opc('', deadband), /tags\.csv:2:\d+: error: OPC Deadband: expected a number from 0 in the node's unit/);
