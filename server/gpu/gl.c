@@ -206,6 +206,6 @@ bool gl_pass_leave(struct gl *gl, const char *name)
     GLenum error = next_error();
     if (error == GL_NO_ERROR)
         return true;
-    log_err(gl->log, "gl: drawing pass %s: OpenGL error 0x%04x", name, error);
+    log_err(gl->log, "gl: OpenGL error while drawing pass %s: 0x%04x", name, error);
     return false;
 }

@@ -16,7 +16,7 @@ GLuint mesh_buffer(struct log *log, const char *name, size_t bytes, const void *
     glNamedBufferStorage(buffer, (GLsizeiptr)bytes, data, flags);
     if (gl_no_errors())
         return buffer;
-    log_err(log, "%s: cannot allocate %zu bytes of GPU memory", name, bytes);
+    log_err(log, "out of GPU memory: the buffer `%s` of %zu bytes cannot be allocated", name, bytes);
     glDeleteBuffers(1, &buffer);
     return 0;
 }
@@ -109,7 +109,7 @@ static GLuint upload_normals(struct gpu_mesh *mesh, struct log *log, const char 
 {
     int16_t(*folded)[2] = mem_try_array(count, sizeof(*folded));
     if (!folded) {
-        log_err(log, "%s: cannot convert %zu normals: out of memory", name, count);
+        log_err(log, "cannot draw %s: out of memory for %zu surface normals", name, count);
         return 0;
     }
     for (size_t i = 0; i < count; i++)

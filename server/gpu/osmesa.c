@@ -90,7 +90,7 @@ static struct gl *osmesa_create(const struct gl_device *device, bool software, s
     }
     osmesa->context = osmesa->create(attributes, NULL);
     if (!osmesa->context || !osmesa->make_current(osmesa->context, osmesa->buffer, OSMESA_UNSIGNED_BYTE, 4, 4)) {
-        text_add(why, "; osmesa: no OpenGL 4.5 core context");
+        text_add(why, "; osmesa: libOSMesa cannot create an OpenGL 4.5 core context");
         goto error;
     }
     if (!gl_others() && gladLoadGL(osmesa->get_proc) < GLAD_MAKE_VERSION(4, 5)) {

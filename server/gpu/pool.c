@@ -125,8 +125,8 @@ struct pool_slice *pool_take(struct pool *pool, size_t count)
         page = page_create(pool, least);
     pool->expected = 0;
     if (count > pool->max_texels)
-        log_err(pool->log, "%s: %zu vertices are too many for this GPU, whose buffer textures hold at most %zu", pool->name, count,
-                pool->max_texels);
+        log_err(pool->log, "%s: the asset has %zu vertices, more than this GPU can hold (buffer textures of at most %zu): split the asset",
+                pool->name, count, pool->max_texels);
     return page ? take_from(page, count) : NULL;
 }
 

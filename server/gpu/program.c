@@ -27,7 +27,7 @@ static bool expand_include(struct expansion *x, const char *from, int line, cons
     const char *close = open ? strchr(open + 1, '"') : NULL;
     const char *line_end = strchr(directive, '\n');
     if (!close || (line_end && close > line_end)) {
-        log_err(x->log, "shader %s:%d: #include expects a file name in double quotes", from, line);
+        log_err(x->log, "cannot draw: invalid shader %s:%d: #include expects a file name in double quotes", from, line);
         return false;
     }
     char *name = mem_printf("%.*s", (int)(close - open - 1), open + 1);
@@ -45,7 +45,7 @@ static bool expand(struct expansion *x, const char *name, const char *text)
 {
     int source = x->count;
     if (source == MAX_INCLUDES) {
-        log_err(x->log, "shader %s: more than %d files included", name, MAX_INCLUDES);
+        log_err(x->log, "cannot draw: invalid shader %s: more than %d files included", name, MAX_INCLUDES);
         return false;
     }
     x->names[x->count++] = name;
@@ -81,7 +81,7 @@ GLuint program_compile(struct log *log, GLenum stage, const char *name, const ch
     if (shader && !good) {
         char why[LOG_BYTES] = "";
         glGetShaderInfoLog(shader, sizeof(why), NULL, why);
-        log_err(log, "shader %s does not compile: %s", name, why);
+        log_err(log, "cannot draw: the OpenGL driver does not compile shader %s: %s", name, why);
         for (int i = 1; i < x.count; i++)
             log_err(log, "shader %s: source %d is %s", name, i, x.names[i]);
         glDeleteShader(shader);
@@ -103,7 +103,7 @@ GLuint program_link(struct log *log, const char *name, const GLuint stages[2])
     if (!good) {
         char why[LOG_BYTES] = "";
         glGetProgramInfoLog(program, sizeof(why), NULL, why);
-        log_err(log, "program %s does not link: %s", name, why);
+        log_err(log, "cannot draw: the OpenGL driver does not link shader program %s: %s", name, why);
         program_destroy(&program);
     }
     for (int i = 0; i < 2; i++)
@@ -116,7 +116,7 @@ static GLuint compile_embedded(struct log *log, GLenum stage, const char *name, 
 {
     const char *text = embedded_find(name);
     if (!text) {
-        log_err(log, "shader %s is missing in this binary: install or build Plantcast again", name);
+        log_err(log, "cannot draw: shader %s is missing in this program: install or build Plantcast again", name);
         return 0;
     }
     return program_compile(log, stage, name, text, defines);

@@ -44,7 +44,7 @@ static bool copy_field(const struct render_job *job, const struct fields_entry *
         return !from->sensors || (copy->sensors = copy_buffer(log, from->sensors));
     copy->shown = mem_try_array(from->ready, sizeof(*copy->shown));
     if (!copy->shown) {
-        log_err(log, "cannot compute the colours of a picture: out of memory (%zu vertices)", from->ready);
+        log_err(log, "a picture was not drawn: out of memory for the colours at %zu vertices", from->ready);
         return false;
     }
     memcpy(copy->shown, from->shown, from->ready * sizeof(*copy->shown));

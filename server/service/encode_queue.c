@@ -63,16 +63,16 @@ static void add_counters(struct encode_queue *queue)
         char *encodes = mem_printf("plantcast_encodes_total{codec=\"%s\"}", name);
         char *seconds = mem_printf("plantcast_encode_seconds_total{codec=\"%s\"}", name);
         char *bytes = mem_printf("plantcast_encode_bytes_total{codec=\"%s\"}", name);
-        queue->encodes[codec] = counters_add(counters, encodes, "counter", "Pictures encoded.");
-        queue->encode_us[codec] = counters_add_seconds(counters, seconds, "counter", "Seconds spent encoding pictures.");
-        queue->bytes[codec] = counters_add(counters, bytes, "counter", "Total size of all encoded pictures in bytes.");
+        queue->encodes[codec] = counters_add(counters, encodes, "counter", "Pictures encoded, by codec.");
+        queue->encode_us[codec] = counters_add_seconds(counters, seconds, "counter", "Seconds spent encoding pictures, by codec.");
+        queue->bytes[codec] = counters_add(counters, bytes, "counter", "Total size in bytes of all encoded pictures, by codec.");
         mem_free(encodes);
         mem_free(seconds);
         mem_free(bytes);
     }
     queue->failures = counters_add(counters, "plantcast_encode_failures_total", "counter", "Pictures that could not be encoded.");
-    queue->chain_count =
-        counters_add(counters, "plantcast_encode_streams", "gauge", "Video encodings in progress; clients with the same view share one.");
+    queue->chain_count = counters_add(counters, "plantcast_encode_streams", "gauge",
+                                      "Video streams that are being encoded; clients with the same view share one.");
 }
 
 struct encode_queue *encode_queue_create(const struct encode_queue_params *params)

@@ -188,15 +188,16 @@ static void add_counters(struct render_service *service, struct counters *counte
 {
     service->renders = counters_add(counters, "plantcast_renders_total", "counter", "Pictures drawn.");
     service->render_us = counters_add_seconds(counters, "plantcast_render_seconds_total", "counter", "Seconds spent drawing pictures.");
-    service->same = counters_add(counters, "plantcast_renders_saved_total", "counter", "Pictures not drawn because nothing had changed.");
+    service->same =
+        counters_add(counters, "plantcast_renders_saved_total", "counter", "Pictures not drawn because nothing visible had changed.");
     service->shared = counters_add(counters, "plantcast_renders_shared_total", "counter",
                                    "Pictures that were drawn for another client's request and reused.");
     service->failures = counters_add(counters, "plantcast_render_failures_total", "counter", "Pictures that could not be drawn.");
-    service->steps =
-        counters_add(counters, "plantcast_render_steps_total", "counter", "Drawing steps of pictures that take more than one step.");
+    service->steps = counters_add(counters, "plantcast_render_steps_total", "counter",
+                                  "Steps in which refined pictures were drawn; a refined picture takes several steps.");
     service->abandoned = counters_add(counters, "plantcast_renders_abandoned_total", "counter",
-                                      "Pictures abandoned because no client needed them any longer.");
-    service->picked = counters_add(counters, "plantcast_picks_total", "counter", "Pixel queries answered.");
+                                      "Refined pictures abandoned before they were complete, because no client needed them any longer.");
+    service->picked = counters_add(counters, "plantcast_picks_total", "counter", "Queries for the value at a pixel that were answered.");
     service->pick_us =
         counters_add_seconds(counters, "plantcast_pick_seconds_total", "counter", "Seconds spent on queries for the value at a pixel.");
     service->losses =

@@ -34,7 +34,7 @@ struct frame_in_flight *frames_in_flight_take(struct frames_in_flight *frames_in
             frames_in_flight->at[i].taken = true;
             return &frames_in_flight->at[i];
         }
-    log_err(log, "no frame can be started: all %d slots for frames in flight on the GPU are in use", FRAMES_IN_FLIGHT);
+    log_err(log, "a picture was not drawn, because all %d slots for pictures in progress on the GPU are in use", FRAMES_IN_FLIGHT);
     return NULL;
 }
 

@@ -270,7 +270,7 @@ static bool submit(struct renderer *renderer, struct render_job *job)
     own->short_of_memory |= gl_out_of_memory_count() != shortages;
     job->frame->render_ns += clock_mono_ns() - start_ns;
     if (good && own->short_of_memory)
-        log_err(log, "picture of %dx%d: the GPU ran out of memory while it was drawn", job->view.width_px, job->view.height_px);
+        log_err(log, "a picture of %dx%d pixels was not drawn: the GPU ran out of memory", job->view.width_px, job->view.height_px);
     return good && !own->short_of_memory;
 }
 

@@ -177,7 +177,7 @@ static struct light_set *end(struct light *light)
     set = make_room(light, baked.bytes);
     if (!set) {
         log_err(light->gpu_scene->gl->log,
-                "light: cannot store the baked light of another view: all %d slots are in use by pictures being drawn", LIGHT_SETS);
+                "light: cannot store the light computed for another view, because pictures being drawn use all %d slots", LIGHT_SETS);
         light_set_finish(&baked, light->gpu_scene);
         return NULL;
     }

@@ -68,8 +68,8 @@ bool openness_open(struct openness *openness, const struct gpu_scene *gpu_scene)
     bool good = path && cache_file_open_if_good(&openness->file, gpu_scene->gl->log, path, magic, key_of(gpu_scene));
     if (good && openness->file.count != GROUND_TEXELS + vertices_of(gpu_scene)) {
         log_warn(gpu_scene->gl->log,
-                 "cache file %s: has the ambient light of %zu points, but the plant needs %zu; the light is computed again",
-                 path, openness->file.count, GROUND_TEXELS + vertices_of(gpu_scene));
+                 "cache file %s has the ambient light of %zu points, but the plant needs %zu; the light is computed again", path,
+                 openness->file.count, GROUND_TEXELS + vertices_of(gpu_scene));
         good = false;
     }
     mem_free(path);
@@ -125,7 +125,7 @@ static void *openness_main(void *arg)
     const struct atomic_file_part part = { writer->bytes, writer->count };
     int status = cache_file_write_parts(writer->path, magic, writer->key, &part, 1);
     if (status != 0)
-        log_info(writer->log, "%s: cannot be written (%s); the baked light will be computed again at each start", writer->path,
+        log_info(writer->log, "cache file %s cannot be written (%s); the ambient light will be computed again at each start", writer->path,
                  strerror(-status));
     return NULL;
 }

@@ -69,7 +69,8 @@ static struct fields_entry *entry_create(struct fields *fields, int asset, const
     entry->shown = mem_try_array(count, sizeof(*entry->shown));
     fields->bytes += bytes;
     if (!entry->shown) {
-        log_err(fields->log, "field of asset number %d (counted from 0): out of memory for %zu vertices; shown as no data", asset, count);
+        log_err(fields->log, "asset number %d of the plant (counted from 0) is shown without data: out of memory for its %zu vertices",
+                asset, count);
         entry_destroy(fields, entry);
         return NULL;
     }
@@ -86,8 +87,8 @@ static bool take_slice(struct fields *fields, struct fields_entry *entry)
         entry->slice = pool_take(fields->pool, entry->count);
     if (entry->slice)
         return true;
-    log_err(fields->log, "field of asset number %d (counted from 0): out of GPU memory for %zu vertices; shown as no data", entry->asset,
-            entry->count);
+    log_err(fields->log, "asset number %d of the plant (counted from 0) is shown without data: out of GPU memory for its %zu vertices",
+            entry->asset, entry->count);
     while (fields->entries[at] != entry)
         at++;
     fields->entries[at] = fields->entries[--fields->count];
@@ -196,7 +197,7 @@ static struct fields_entry *look(struct fields *fields, const struct fields_ask 
     if (!scalars && !field_covers(fields->field, asset, params))
         return NULL;
     if (!scalars) {
-        log_err(fields->log, "field of asset number %d (counted from 0): out of memory; the asset is shown as no data", asset);
+        log_err(fields->log, "asset number %d of the plant (counted from 0) is shown without data: out of memory", asset);
         return &fields->lost;
     }
     struct fields_entry *entry = entry_find(fields, asset, params, ask->step);

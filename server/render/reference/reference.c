@@ -130,12 +130,14 @@ static GLuint upload_distances(struct log *log, const struct asset_view *view)
     GLint limit = 0;
     glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &limit);
     if (groups * vertices > (size_t)limit) {
-        log_err(log, "per-fragment field: %zu sensors at %zu vertices do not fit into one buffer texture", sensors, vertices);
+        log_err(log,
+                "--field per-fragment: %zu sensors at %zu vertices do not fit into one buffer texture of this GPU: use --field vertices",
+                sensors, vertices);
         return 0;
     }
     float(*texels)[SENSORS_PER_TEXEL] = mem_try_array(groups * vertices, sizeof(*texels));
     if (!texels) {
-        log_err(log, "per-fragment field: cannot store %zu sensors at %zu vertices: out of memory", sensors, vertices);
+        log_err(log, "--field per-fragment: cannot store %zu sensors at %zu vertices: out of memory", sensors, vertices);
         return 0;
     }
     for (size_t i = 0; i < sensors; i++)
