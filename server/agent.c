@@ -96,7 +96,7 @@ struct agent *agent_start(struct log *log, const char *address, int port)
     agent->stop_fd = eventfd(0, EFD_CLOEXEC);
     agent->fd = open_port(address, port);
     if (agent->fd < 0)
-        log_err(log, "agent: cannot listen on port %d: %s", port, strerror(-agent->fd));
+        log_err(log, "--agent-port: cannot listen on port %d for HAProxy's agent check: %s", port, strerror(-agent->fd));
     if (agent->fd < 0 || agent->stop_fd < 0 || !thread_start(&agent->thread, log, "agent", agent_main, agent))
         agent_stop(&agent);
     return agent;

@@ -56,7 +56,7 @@ static void limit(struct helper *helper)
     bool divided = cgroup_create("reader", bytes, MAX_TASKS, &helper->cgroup);
     if (!divided || !cgroup_add(helper->cgroup, helper->child))
         log_warn(helper->params->log,
-                 "%s: memory limits apply to each process alone, not to all together: the cgroup `reader` cannot be %s: %s",
+                 "%s: the memory limit applies to each of the program's processes, not to all together: cgroup `reader` cannot be %s: %s",
                  helper->params->arguments[0], divided ? "joined" : "made", strerror(errno));
 }
 

@@ -64,7 +64,7 @@ static void print_usage(FILE *out)
           "  --memory MB      total memory limit for all caches (default: a quarter of the machine's memory,\n"
           "                   at most 2048). The model and the picture being drawn are not included. /metrics\n"
           "                   shows how much each cache uses\n"
-          "  --field WHERE    where field values are computed: vertices (fast) or per-fragment (at each pixel,\n"
+          "  --field WHERE    where values between sensors are computed: vertices (fast) or per-fragment (at each pixel,\n"
           "                   which is slow, for comparison only) (default: vertices)\n"
           "  --h264 ENCODER   libavcodec encoder for H.264 video: libx264, h264_nvenc, h264_vaapi, libopenh264,\n"
           "                   ...; off: send JPEG only (default: libx264). If the encoder does not work on this\n"

@@ -173,8 +173,8 @@ static void refuse(struct reload *reload, const struct diag *diag, const char *w
     }
     if (why)
         json_array_append_new(errors, json_string(why));
-    log_event(log, LOG_ERROR, EVENT_RELOAD_REFUSED, "reload: keeping the configuration %s%s%s", (*reload->runtime)->plant->files.hash,
-              why ? ": " : "", why ? why : "");
+    log_event(log, LOG_ERROR, EVENT_RELOAD_REFUSED, "reload: refused, so the daemon keeps the configuration %s%s%s",
+              (*reload->runtime)->plant->files.hash, why ? ": " : "", why ? why : "");
     answer(reload, false,
            json_pack("{s:b,s:s,s:o}", "reloaded", false, "configuration", (*reload->runtime)->plant->files.hash, "errors", errors));
 }
@@ -263,8 +263,8 @@ static void put_in_force(struct reload *reload, struct plant_runtime *after, con
     } else if (ended) {
         plant_runtime_destroy(&after);
     } else {
-        log_err(reload->context->log,
-                "reload: the new plant cannot be activated; the daemon exits and loads the new plant at its next start");
+        log_err(reload->context->log, "reload: recording or the sources of the changed plant could not be started; the daemon exits and "
+                                      "loads the changed plant at its next start");
         net_stop(reload->net);
         plant_runtime_destroy(&after);
     }
@@ -280,7 +280,7 @@ static int lock_folder(const struct reload *reload, char **why)
     char *folder = plant_folder_of(reload->context->params->plant_path), *cause = NULL;
     int lock = plant_folder_lock(&(struct plant_folder_params){ .folder = folder, .wait_ms = WAIT_MS }, &cause);
     if (lock < 0)
-        *why = mem_printf("the plant's folder %s: %s; try again later", folder, cause);
+        *why = mem_printf("the plant's folder %s cannot be locked: %s; try again later", folder, cause);
     mem_free(cause);
     mem_free(folder);
     return lock;
@@ -327,13 +327,15 @@ static bool reload_now(struct reload *reload)
     if (reload->context->params->role == SERVER_CORE)
         net_call(reload->net, announce, reload->net);
     struct plant_runtime *before = *reload->runtime, *after = plant_runtime_read(reload->context, &diag);
-    const char *why = after ? plant_needs_restart(before->plant, after->plant) : diag.errors ? NULL : "the log says why";
+    const char *why = after         ? plant_needs_restart(before->plant, after->plant)
+                      : diag.errors ? NULL
+                                    : "the changed plant cannot be loaded; the daemon's log says why";
     if (after && !why && reload->expected[0] && strcmp(after->plant->files.hash, reload->expected) != 0)
-        why = "plant file and tag list differ from the core's: copy them from the core to this machine, then reload";
+        why = "the plant file and tag list on this machine differ from the core's: copy them from the core to this machine, then reload";
     if (after && !why && !start_render_service(reload, after))
-        why = "drawing the new plant failed; the log says why";
+        why = "the changed plant cannot be drawn; the daemon's log says why";
     if (after && !why && !wait_for_core(reload))
-        why = "the core has not activated its changed files; its log says why";
+        why = "the core did not load its changed plant file or tag list; the core's log says why";
     bool good = after && !why;
     if (good) {
         plant_diff(before->plant, after->plant, &diff);
@@ -356,7 +358,7 @@ static bool reload_settled(struct reload *reload)
     if (plant_folder_settle(&(struct plant_folder_params){ .folder = folder, .wait_ms = WAIT_MS }, &why)) {
         good = reload_now(reload);
     } else {
-        char *line = mem_printf("the plant's folder %s: %s; try again later", folder, why);
+        char *line = mem_printf("the plant's folder %s cannot be locked: %s; try again later", folder, why);
         refuse(reload, &none, line);
         mem_free(line);
     }
@@ -415,10 +417,12 @@ static bool save_now(struct reload *reload, const struct tag_save *save)
         refuse(reload, &none, text);
     } else {
         reload->kept = kept;
-        log_info(log, "tag list: %s saved by %s; previous list kept as %s", save->path, save->who, kept);
+        log_info(log, "tag list %s was saved by %s; the previous list is kept as %s", save->path, save->who, kept);
         if (!prepare(reload)) {
             put_back(reload, save, kept);
-            refuse(reload, &none, "plantcast-prep could not prepare the plant with this tag list; the log says why");
+            refuse(reload, &none,
+                   "plantcast-prep could not prepare the plant with this tag list, so the previous list is restored; the daemon's log says "
+                   "why");
         } else if (!reload_now(reload)) {
             put_back(reload, save, kept);
         } else {
@@ -605,7 +609,9 @@ static void import_locked(struct reload *reload, struct import_order *order, int
     char *remark, *why = import_job_run(job, order, &remark);
     if (!why) {
         plant_import_set_phase(reload->import, IMPORT_LOADING);
-        why = reload_now(reload) ? NULL : mem_strdup("the plant cannot be activated; the log says why");
+        why = reload_now(reload)
+                  ? NULL
+                  : mem_strdup("the daemon refused to load the imported plant, so the import is undone; the daemon's log says why");
     }
     if (why)
         why = undo_import(reload, job, why);
@@ -650,7 +656,7 @@ static void lead_now(struct reload *reload, int64_t begun_ns)
     bool good = open && plant_runtime_lead(runtime) && net_call(reload->net, lead_in_loop, reload);
     pthread_mutex_unlock(&reload->put_lock);
     if (good) {
-        log_info(reload->context->log, "core: this core now polls devices and owns the alarms, after %.1f s",
+        log_info(reload->context->log, "core: this core took over the lead within %.1f s: it now polls devices and evaluates alarms",
                  (double)(clock_mono_ns() - begun_ns) / 1e9);
     } else if (open) {
         log_err(reload->context->log, "core: this core cannot take over: polling or the alarms could not be started (see the messages "

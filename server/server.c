@@ -293,7 +293,8 @@ static bool prepare(struct server *server)
     char *folder = plant ? plant_runtime_prepared_folder(&server->params, plant) : NULL, *why = NULL;
     bool good = folder && access(folder, F_OK) == 0;
     if (good) {
-        log_warn(server->log, "%s: preparing the plant: prepared files are missing or outdated", server->params.plant_path);
+        log_warn(server->log, "%s: prepared files are missing or outdated: running plantcast-prep before the plant is served",
+                 server->params.plant_path);
         supervision_starting(server->supervision, "preparing the plant");
         atomic_store(&preparing, true);
         why = helper_prepare(&(struct helper_params){ .stop = is_told_to_end, .log = server->log, .notifies = true }, folder,
@@ -301,9 +302,9 @@ static bool prepare(struct server *server)
         atomic_store(&preparing, false);
         good = !why && !atomic_load(&told_to_end);
         if (atomic_load(&told_to_end))
-            log_event(server->log, LOG_INFO, EVENT_STOPPING, "stopping; the next start continues to prepare the plant");
+            log_event(server->log, LOG_INFO, EVENT_STOPPING, "stopping while plantcast-prep prepares the plant; the next start continues");
         else if (why)
-            log_err(server->log, "%s: the plant cannot be prepared: %s", server->params.plant_path, why);
+            log_err(server->log, "%s: plantcast-prep could not prepare the plant: %s", server->params.plant_path, why);
     }
     mem_free(why);
     mem_free(folder);
@@ -320,7 +321,7 @@ static bool settle_folder(struct server *server)
     bool settled =
         plant_folder_settle(&(struct plant_folder_params){ .folder = folder, .wait_ms = SETTLE_MS, .finished = &finished }, &why);
     if (finished)
-        log_warn(server->log, "%s: completed %s that had been interrupted", server->params.plant_path, finished);
+        log_warn(server->log, "%s: completed %s, which had been interrupted", server->params.plant_path, finished);
     if (!settled)
         log_err(server->log, "%s: an import was interrupted and can neither be completed nor undone: %s", server->params.plant_path, why);
     mem_free(why);
@@ -411,7 +412,8 @@ static bool take_seat(struct server *server, char name[LEASE_NODE_BYTES])
 {
     char *why = node_id_take(&server->node_id, server->runtime->services.history_folder);
     if (!why && !lease_name(name, server->params.node, server->node_id.id))
-        why = mem_printf("--node: %s is longer than %d bytes", server->params.node, LEASE_NODE_BYTES - 2 - (int)strlen(server->node_id.id));
+        why = mem_printf("--node: the name %s is longer than %d bytes", server->params.node,
+                         LEASE_NODE_BYTES - 2 - (int)strlen(server->node_id.id));
     if (why)
         log_err(server->log, "%s", why);
     bool good = !why;
@@ -427,7 +429,8 @@ static bool make_keeper(struct server *server)
     if (server->params.role != SERVER_CORE || !server->params.core_count)
         return true;
     if (!plant->history.postgres.url || plant->history.off) {
-        log_err(server->log, "%s: two cores require `postgres` in `history`, because PostgreSQL stores their lease",
+        log_err(server->log,
+                "%s: two cores (--role core with --core) require `postgres` in `history`, because PostgreSQL decides which core leads",
                 server->params.plant_path);
         return false;
     }
@@ -678,7 +681,8 @@ static size_t count_sensors(const struct plant *plant, struct diag *diag)
     for (size_t i = 0; i < plant->tag_count; i++)
         count += plant->tags[i].group >= 0 && plant->tags[i].asset >= 0;
     if (count == 0 && plant->tag_count > 0)
-        diag_warning(diag, plant->files.tags_path, 0, 0, "none of the %zu tags is a sensor (Group, Asset and a place): there is no field",
+        diag_warning(diag, plant->files.tags_path, 0, 0,
+                     "none of the %zu tags has Group, Asset and a place, so there is no sensor, and surfaces show no values",
                      plant->tag_count);
     return count;
 }
@@ -692,8 +696,9 @@ int server_check(const struct server_params *params)
     if (params->imports && confine_lacks(lacks))
         printf("%s: warning: --import: this kernel has %s\n", params->plant_path, lacks);
     if (plant_folder_unsettled(folder))
-        diag_warning(&diag, params->plant_path, 0, 0,
-                     "a killed import replaced some of the files; the next start of the daemon completes the import");
+        diag_warning(
+            &diag, params->plant_path, 0, 0,
+            "an import was killed after it had replaced some of the plant's files; the next start of the daemon completes the import");
     mem_free(folder);
     if (plant) {
         models_check(plant, 0, &diag, stdout);

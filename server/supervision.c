@@ -43,13 +43,15 @@ struct supervision *supervision_create(struct log *log, struct counters *counter
     const char *runtime = getenv("RUNTIME_DIRECTORY");
     supervision->log = log;
     supervision->all = counters;
-    supervision->counters.reload_good = counters_add(counters, "plantcast_reload_good", "gauge", "1 unless the last reload was refused.");
-    supervision->counters.reloaded_s = counters_add(counters, "plantcast_configuration_loaded_timestamp_seconds", "gauge",
-                                                    "Time at which the active configuration was loaded, in seconds since 1970.");
+    supervision->counters.reload_good = counters_add(counters, "plantcast_reload_good", "gauge",
+                                                     "1 unless the daemon refused the last reload of its plant file and tag list.");
+    supervision->counters.reloaded_s =
+        counters_add(counters, "plantcast_configuration_loaded_timestamp_seconds", "gauge",
+                     "Time at which the active configuration (plant file and tag list) was loaded, in seconds since 1970.");
     counter_set(supervision->counters.reload_good, 1);
     counter_set(supervision->counters.reloaded_s, clock_utc_ns() / NS_PER_S);
     counter_set(counters_add(counters, "plantcast_build_info{version=\"" PLANTCAST_VERSION "\",commit=\"" PLANTCAST_COMMIT "\"}", "gauge",
-                             "Always 1; the labels name the version of this program."),
+                             "Always 1; the labels name the version of this daemon."),
                 1);
     if (runtime && *runtime)
         supervision->runtime = mem_printf("%.*s", (int)strcspn(runtime, ":"), runtime);
@@ -100,7 +102,7 @@ static void look(struct supervision *supervision, struct render_service *render_
 {
     bool stuck = render_service_is_stuck(render_service, now_ns);
     if (stuck && !supervision->stuck)
-        log_err(supervision->log, "render thread: no progress%s",
+        log_err(supervision->log, "the thread that draws pictures makes no progress%s",
                 supervision->watchdog_ns ? "; the service manager will start the daemon again" : "");
     supervision->stuck = stuck;
     if (!stuck && supervision->watchdog_ns)
@@ -119,7 +121,7 @@ void supervision_tick(struct supervision *supervision, const struct net_status *
     look(supervision, status->render_service, now_ns);
     if (status->certificate_ends_s)
         counter_set(counters_add(supervision->all, "plantcast_certificate_expiry_timestamp_seconds", "gauge",
-                                 "Expiry time of the served certificate, in seconds since 1970."),
+                                 "Expiry time of this server's TLS certificate, in seconds since 1970."),
                     status->certificate_ends_s);
 }
 

@@ -219,7 +219,8 @@ static struct pending_pairing *begin(struct pairings *pairings, const uint8_t ha
     memcpy(waiting.hash, hash, TOKEN_HASH_BYTES);
     memcpy(waiting.address, request->address, sizeof(waiting.address));
     snprintf(waiting.from, sizeof(waiting.from), "%s", request->from);
-    log_info(pairings->kept.log, "pairing: %s asks to be display %d of wall %s", waiting.from, waiting.place.display, waiting.place.wall);
+    log_info(pairings->kept.log, "pairing: %s asks to become display %d of video wall %s", waiting.from, waiting.place.display,
+             waiting.place.wall);
     pairings->waiting[pairings->count] = waiting;
     pairings->number++;
     return &pairings->waiting[pairings->count++];

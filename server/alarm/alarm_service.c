@@ -208,13 +208,13 @@ static void add_counters(struct alarm_service *service)
     struct counters *c = service->params.counters;
     for (int i = 0; i < ALARM_STATUSES; i++) {
         char *name = mem_printf("plantcast_alarms{state=\"%s\"}", alarm_status_name((enum alarm_status)i));
-        service->counters.statuses[i] = counters_add(c, name, "gauge", "Alarms by state.");
+        service->counters.statuses[i] = counters_add(c, name, "gauge", "Number of alarms in each state.");
         mem_free(name);
     }
     for (int i = 0; i < ALARM_PRIORITIES; i++) {
         char *name = mem_printf("plantcast_alarms_shown{priority=\"%d\"}", i + 1);
         service->counters.priorities[i] =
-            counters_add(c, name, "gauge", "Alarms shown in the alarm list, by priority; 1 is the most urgent.");
+            counters_add(c, name, "gauge", "Number of alarms in the alarm list, by priority; 1 is the most urgent.");
         mem_free(name);
     }
     service->counters.active = counters_add(c, "plantcast_alarms_active", "gauge", "Alarms in the alarm list that are still active.");
@@ -222,7 +222,8 @@ static void add_counters(struct alarm_service *service)
         counters_add(c, "plantcast_alarms_standing", "gauge", "Alarms in the alarm list that have been active for more than a day.");
     service->counters.chattering =
         counters_add(c, "plantcast_alarms_chattering", "gauge", "Alarms raised three times or more within the last minute.");
-    service->counters.held = counters_add(c, "plantcast_alarms_held", "gauge", "Active alarms whose reading is Bad.");
+    service->counters.held =
+        counters_add(c, "plantcast_alarms_held", "gauge", "Active alarms whose state is held, because their reading is Bad.");
     service->counters.rate = counters_add(c, "plantcast_alarms_recent", "gauge", "Alarms raised within the last ten minutes.");
     service->counters.raised = counters_add(c, "plantcast_alarms_raised_total", "counter", "Alarms raised.");
     service->counters.lost =

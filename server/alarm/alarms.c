@@ -609,8 +609,11 @@ static void end_shelf(struct alarms *alarms, int index, struct instant now)
     alarm->until = (struct instant){ 0 };
     alarm->who[0] = alarm->reason[0] = 0;
     step(alarms, index,
-         &(struct alarm_change){
-             .event = ALARM_UNSHELVE, .utc_ns = now.utc_ns, .value = NAN, .who = "", .reason = "the shelving time is over" },
+         &(struct alarm_change){ .event = ALARM_UNSHELVE,
+                                 .utc_ns = now.utc_ns,
+                                 .value = NAN,
+                                 .who = "",
+                                 .reason = "the time for which the alarm was shelved is over" },
          now.mono_ns);
 }
 

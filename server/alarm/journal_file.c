@@ -198,7 +198,8 @@ int journal_file_forget(struct journal_file *file, int64_t before_us)
 {
     sqlite3_stmt *s = database_statement(&file->db, SQL_FORGET);
     sqlite3_bind_int64(s, 1, before_us);
-    return database_fail(&file->db, database_run(&file->db, s), "old alarm events cannot be deleted");
+    return database_fail(&file->db, database_run(&file->db, s),
+                         "alarm events older than keep_days cannot be deleted from the alarm journal");
 }
 
 /* --- reading ---------------------------------------------------------------------------------------------------------------- */

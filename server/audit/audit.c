@@ -274,10 +274,11 @@ struct audit *audit_start(const struct audit_params *params)
 {
     struct audit *audit = mem_new(sizeof(*audit));
     *audit = (struct audit){ .params = *params, .path = mem_strdup(params->path), .file.fd = -1, .last = &audit->first };
-    audit->good = counters_add(params->counters, "plantcast_audit_good", "gauge", "1 while the audit trail can be written.");
+    audit->good =
+        counters_add(params->counters, "plantcast_audit_good", "gauge", "1 while the daemon can write its audit trail (--audit).");
     audit->lines = counters_add(params->counters, "plantcast_audit_lines_total", "counter", "Lines of the audit trail written.");
-    audit->lost =
-        counters_add(params->counters, "plantcast_audit_lost_total", "counter", "Entries that could not be written to the audit trail.");
+    audit->lost = counters_add(params->counters, "plantcast_audit_lost_total", "counter",
+                               "Entries lost because the audit trail could not be written.");
     counter_set(audit->good, 1);
     thread_init(&audit->thread);
     clock_cond_init(&audit->settled);

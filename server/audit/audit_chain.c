@@ -80,7 +80,7 @@ bool audit_chain_check(struct audit_chain *chain, const char *line, size_t count
     const size_t tail = strlen(HASH_KEY) + AUDIT_HASH_CHARS + strlen(END);
     char hash[AUDIT_HASH_CHARS + 1];
     if (count < tail || count >= AUDIT_LINE_BYTES || memcmp(line + count - tail, HASH_KEY, strlen(HASH_KEY)) != 0) {
-        *why = "not a line of an audit trail";
+        *why = "this is not a line of an audit trail";
         return false;
     }
     const char *said = line + count - strlen(END) - AUDIT_HASH_CHARS;
@@ -88,7 +88,7 @@ bool audit_chain_check(struct audit_chain *chain, const char *line, size_t count
     json_t *object = memcmp(hash, said, AUDIT_HASH_CHARS) == 0 ? json_loadb(line, count, JSON_REJECT_DUPLICATES, NULL) : NULL;
     const char *prev = json_string_value(json_object_get(object, "prev"));
     json_int_t seq = json_integer_value(json_object_get(object, "seq"));
-    *why = !object                                     ? "the line was changed: its hash differs"
+    *why = !object                                     ? "the line was changed after it was written: its hash differs"
            : !prev || seq < 1                          ? "the line has no line number (seq), or no hash of the preceding line (prev)"
            : !first && (uint64_t)seq != chain->seq + 1 ? "lines before this line were removed or inserted"
            : !first && strcmp(prev, chain->hash) != 0

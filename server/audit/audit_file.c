@@ -54,7 +54,8 @@ static int find_chain(struct audit_file *file, char **finding)
     if (file->bytes == (size_t)st.st_size)
         return 0;
     if (!*finding)
-        *finding = mem_printf("%s: removed an incomplete last line of %zu bytes", file->path, (size_t)st.st_size - file->bytes);
+        *finding = mem_printf("%s: removed an incomplete last line of %zu bytes from the audit file", file->path,
+                              (size_t)st.st_size - file->bytes);
     return ftruncate(file->fd, (off_t)file->bytes) == 0 ? 0 : -errno;
 }
 
@@ -77,8 +78,8 @@ static void compare_head(struct audit_file *file, char **finding)
         (head.seq == file->chain.seq && !strcmp(head.hash, file->chain.hash)))
         return;
     if (!*finding && !is_rotated(file, &head))
-        *finding = mem_printf("%s: ends at line %" PRIu64 ", but was written up to line %" PRIu64 ": lines were removed", file->path,
-                              file->chain.seq, head.seq);
+        *finding = mem_printf("%s: the audit file ends at line %" PRIu64 ", but was written up to line %" PRIu64 ": lines were removed",
+                              file->path, file->chain.seq, head.seq);
     file->chain = head;
 }
 
@@ -117,7 +118,7 @@ static int look_at_path(struct audit_file *file, char **finding)
     struct stat ours, there;
     bool open = file->fd >= 0 && fstat(file->fd, &ours) == 0, found = stat(file->path, &there) == 0;
     if (open && (size_t)ours.st_size != file->bytes) {
-        *finding = mem_printf("%s: has %lld bytes, but %zu were written: another program changed the file", file->path,
+        *finding = mem_printf("%s: the audit file has %lld bytes, but %zu were written: another program changed the file", file->path,
                               (long long)ours.st_size, file->bytes);
         file->bytes = (size_t)ours.st_size;
     }

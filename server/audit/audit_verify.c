@@ -47,7 +47,7 @@ static void verify_file(struct audit_walk *walk, const char *path)
     }
     report->files++;
     for (ssize_t n; report->good && (n = getline(&line, &capacity, file)) > 0;) {
-        const char *why = "the line is truncated";
+        const char *why = "the line of the audit trail is truncated";
         number++;
         if (line[n - 1] != '\n' || !audit_chain_check(&report->end, line, (size_t)n - 1, report->lines == 0, &why)) {
             set_fault(report, mem_printf("%s:%zu: %s", path, number, why));
@@ -116,13 +116,13 @@ void audit_file_verify(const char *path, const struct audit_chain *known, struct
         set_fault(report,
                   mem_printf("%s: the file is missing: without it, the removal of lines from the end cannot be detected", head_path));
     if (report->good && walk.head.seq > report->end.seq)
-        set_fault(report, mem_printf("%s: ends at line %" PRIu64 "; the last %" PRIu64 " lines were removed (%s)", path, report->end.seq,
-                                     walk.head.seq - report->end.seq, head_path));
+        set_fault(report, mem_printf("%s: the audit trail ends at line %" PRIu64 "; the last %" PRIu64 " lines were removed (%s)", path,
+                                     report->end.seq, walk.head.seq - report->end.seq, head_path));
     if (report->good && known->seq > report->end.seq)
-        set_fault(report,
-                  mem_printf("%s: ends at line %" PRIu64 ", before line %" PRIu64 " of --known", path, report->end.seq, known->seq));
+        set_fault(report, mem_printf("%s: the audit trail ends at line %" PRIu64 ", before line %" PRIu64 " of --known", path,
+                                     report->end.seq, known->seq));
     if (report->good && known->seq && known->seq < report->first_seq)
-        set_fault(report,
-                  mem_printf("%s: begins at line %" PRIu64 ", after line %" PRIu64 " of --known", path, report->first_seq, known->seq));
+        set_fault(report, mem_printf("%s: the audit trail begins at line %" PRIu64 ", after line %" PRIu64 " of --known", path,
+                                     report->first_seq, known->seq));
     mem_free(head_path);
 }

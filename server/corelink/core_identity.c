@@ -84,7 +84,7 @@ char *core_identity_difference(const json_t *told, const char *peer, const struc
     for (size_t i = 0; i < sizeof(members) / sizeof(members[0]); i++) {
         const char *other = json_string_value(json_object_get(told, members[i].member));
         if (!other)
-            return mem_printf("the %s does not send its %s", peer, members[i].member);
+            return mem_printf("the %s does not send its %s: do both nodes run the same version?", peer, members[i].member);
         if (strcmp(other, members[i].own) != 0) {
             char *files = members[i].own == own->configuration ? name_files(told, own) : mem_strdup("");
             char *why = mem_printf("%s: the %s has %.100s, this node %s%s", members[i].member, peer, other, members[i].own, files);

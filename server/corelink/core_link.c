@@ -338,7 +338,9 @@ static void on_told(struct core_link *link, const json_t *message)
     const char *kept = json_string_value(json_object_get(message, "kept"));
     int error = kept && link->params.keeper && link->params.folder ? notifier_put_kept(link->params.folder, kept) : 0;
     if (error)
-        log_err(link->params.log, "notify: the record of sent alarms cannot be written (%s); alarms may be sent twice", strerror(-error));
+        log_err(link->params.log,
+                "notify: the file notify.json, which records sent alarms, cannot be written (%s); alarms may be sent twice",
+                strerror(-error));
 }
 
 static void on_text(struct core_link *link)
@@ -346,17 +348,17 @@ static void on_text(struct core_link *link)
     json_t *message = json_loadb(link->in.at, link->in.length, JSON_REJECT_DUPLICATES, NULL);
     const char *type = json_string_value(json_object_get(message, "type")), *why = NULL;
     if (!type)
-        refuse(link, "the core's message is not JSON");
+        refuse(link, "the core's message is not JSON; do both nodes run the same version?");
     else if (!strcmp(type, "refused"))
         on_refused(link, message);
     else if (!strcmp(type, "standby"))
-        end(link, "this core is standby and does not lead");
+        end(link, "this core is the standby, which sends no readings: the leading core does");
     else if (!strcmp(type, "core"))
         on_core(link, message);
     else if (!strcmp(type, "lease") && (link->taken || link->votes))
         on_lease(link, message);
     else if (!link->taken)
-        refuse(link, "the core's first message is not an introduction (type core)");
+        refuse(link, "the core's first message is not an introduction (type core); do both nodes run the same version?");
     else if (!strcmp(type, "told"))
         on_told(link, message);
     else if (!strcmp(type, "links"))
@@ -382,7 +384,8 @@ static void compare_clocks(struct core_link *link, int64_t core_utc_ns, int64_t 
     bool differ = llabs(ahead_ns) > CLOCKS_NS;
     counter_set(link->behind, ahead_ns / 1000);
     if (differ && !link->clock_said)
-        log_warn(link->params.log, "core: the core's clock is %.1f s %s this machine's: all times shown are the core's",
+        log_warn(link->params.log,
+                 "core: the core's clock is %.1f s %s this machine's clock: pages show the core's time; synchronise both clocks",
                  (double)llabs(ahead_ns) / 1e9, ahead_ns > 0 ? "ahead of" : "behind");
     link->clock_said = differ;
 }
@@ -419,7 +422,7 @@ static void on_bytes(struct core_link *link)
 {
     struct core_readings readings = { .at = link->readings, .least_ns = link->least_ns, .at_ns = link->readings_ns };
     int64_t now_ns = clock_mono_ns();
-    const char *why = !link->taken ? "the core's first message is not an introduction (type core)"
+    const char *why = !link->taken ? "the core's first message is not an introduction (type core); do both nodes run the same version?"
                                    : core_readings_read(&readings, link->params.plant->tag_count, link->in.at, link->in.length, now_ns);
     if (why) {
         refuse(link, why);
@@ -429,7 +432,7 @@ static void on_bytes(struct core_link *link)
     link->readings_ns = readings.at_ns;
     /* rejects readings that are too old: a slow network delayed them, or this machine slept when they arrived */
     if (readings.late_ns > CORE_SILENT_NS) {
-        end(link, "readings arrive more than 2 s late");
+        end(link, "readings from the core arrive more than 2 s late");
         return;
     }
     store_mirror(link->params.store, readings.at, readings.count, now_ns);
@@ -442,7 +445,7 @@ static void on_receive(struct core_link *link, const void *bytes, size_t count)
 {
     link->heard_ns = clock_mono_ns();
     if (link->in.length + count > MAX_MESSAGE_BYTES) {
-        refuse(link, "the core's message is larger than 64 MiB");
+        refuse(link, "the core's message is larger than 64 MiB; do both nodes run the same version?");
         return;
     }
     text_add_bytes(&link->in, bytes, count);
@@ -540,7 +543,7 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
         if (len > 2)
             snprintf(link->why, sizeof(link->why), "%.*s", (int)(len - 2), (const char *)in + 2);
         break;
-    case LWS_CALLBACK_CLIENT_CLOSED: end(link, "the connection was lost"); break;
+    case LWS_CALLBACK_CLIENT_CLOSED: end(link, "the connection to the core was lost"); break;
     default: break;
     }
     return 0;
@@ -691,9 +694,9 @@ static void watch_silence(struct core_link *link)
     if (!link->introduced && now_ns - link->begun_ns > CONNECT_NS)
         end(link, "the core did not answer within 4 s");
     if (link->introduced && now_ns - link->heard_ns > CORE_SILENT_NS)
-        end(link, "nothing received for 2 s");
+        end(link, "nothing received from the core for 2 s");
     if (link->is_up && now_ns - link->readings_ns > CORE_SILENT_NS)
-        end(link, "no readings received for 2 s");
+        end(link, "no readings received from the core for 2 s");
 }
 
 /* Runs one connection to a core until it ends, and leaves the reason in link->why. */
@@ -794,7 +797,8 @@ static bool read_token(struct core_link *link)
     if (good)
         snprintf(link->authorization, sizeof(link->authorization), "Bearer %.*s", (int)n, text);
     else
-        log_err(link->params.log, "core: %s: %s", path, text ? "the first line of the file is not a token" : strerror(errno));
+        log_err(link->params.log, "core: %s: %s", path,
+                text ? "the first line of this file must be a token (see `plantcast token`)" : strerror(errno));
     mem_free(text);
     return good;
 }
@@ -817,13 +821,13 @@ struct core_link *core_link_start(const struct core_link_params *params)
     link->leader_index = -1;
     link->readings = mem_array(params->plant->tag_count + 1, sizeof(*link->readings));
     add_up_counters(link);
-    link->connects = counters_add(c, "plantcast_core_connects_total", "counter", "Connections to a core that delivered readings.");
-    link->refused =
-        counters_add(c, "plantcast_core_refused_total", "counter",
-                     "Connections to a core that were ended because the core differed in version, plant or configuration, or refused this "
-                     "node.");
+    link->connects =
+        counters_add(c, "plantcast_core_connects_total", "counter", "Connections from this daemon to a core that delivered readings.");
+    link->refused = counters_add(
+        c, "plantcast_core_refused_total", "counter",
+        "Connections from this daemon to a core that ended because the core differed in version or plant, or refused this daemon.");
     link->behind = counters_add_seconds(c, "plantcast_core_clock_ahead_seconds", "gauge",
-                                        "Seconds by which the core's clock is ahead of this machine's.");
+                                        "Seconds by which the core's clock is ahead of this machine's clock.");
     /* lets libwebsockets log only errors and warnings; the link's own loop logs its connections */
     lws_set_log_level(LLL_ERR | LLL_WARN, NULL);
     /* the leader may have refused this node because of its old plant; with the plant just loaded, that refusal no longer keeps

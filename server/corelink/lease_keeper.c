@@ -309,10 +309,9 @@ static void promise_itself(struct lease_keeper *keeper)
 static void tell_maintenance(struct lease_keeper *keeper, bool alone)
 {
     if (alone && !keeper->told_alone)
-        log_warn(keeper->params.log,
-                 "lease: standby: maintenance: this core leads alone, even without PostgreSQL; no other core takes over");
+        log_warn(keeper->params.log, "lease: maintenance began: this core leads alone, even without PostgreSQL; no other core takes over");
     if (!alone && keeper->told_alone)
-        log_info(keeper->params.log, "lease: standby: normal: a standby that follows may take over");
+        log_info(keeper->params.log, "lease: maintenance ended: a standby core that follows this core may take over again");
     keeper->told_alone = alone;
 }
 
@@ -376,7 +375,7 @@ static void give(struct lease_keeper *keeper)
     keeper->gives = false;
     pthread_mutex_unlock(&keeper->thread.lock);
     if (*standby)
-        log_info(keeper->params.log, "lease: handed over to %.*s", name_bytes(standby), standby);
+        log_info(keeper->params.log, "lease: this core handed the lead over to %.*s", name_bytes(standby), standby);
     else
         log_info(keeper->params.log, "lease: released");
 }
@@ -405,7 +404,7 @@ static void tell(struct lease_keeper *keeper)
     }
     if (ends && !keeper->told_lost) {
         keeper->told_lost = true;
-        log_err(keeper->params.log, "lease: lost (%s); this core stops polling and exits",
+        log_err(keeper->params.log, "lease: this core lost the lead (%s); it stops polling and exits",
                 lost ? "another core leads, or this plant's row in the PostgreSQL table `lease` was edited"
                      : "neither PostgreSQL nor a standby has confirmed the lease");
         keeper->params.lost(keeper->params.arg);
@@ -574,19 +573,25 @@ static void add_counters(struct lease_keeper *keeper)
 {
     struct counters *c = keeper->params.counters;
     keeper->counters.active =
-        counters_add(c, "plantcast_core_active", "gauge", "1 while this core leads: it polls the devices and owns the alarms.");
+        counters_add(c, "plantcast_core_active", "gauge",
+                     "1 while this daemon is the plant's leading core, which polls the devices and evaluates the alarms.");
     keeper->counters.here = counters_add(c, "plantcast_core_up{core=\"this\"}", "gauge", CORE_UP_HELP);
-    keeper->counters.epoch =
-        counters_add(c, "plantcast_core_epoch", "gauge", "Epoch of the lease; increases each time another core takes the lead.");
+    keeper->counters.epoch = counters_add(c, "plantcast_core_epoch", "gauge",
+                                          "Epoch of the lead: increases each time another core takes over the lead of the plant.");
     keeper->counters.age =
-        counters_add_seconds(c, "plantcast_core_lease_age_seconds", "gauge", "Seconds since the last confirmed renewal of the lease.");
+        counters_add_seconds(c, "plantcast_core_lease_age_seconds", "gauge",
+                             "Seconds since the last confirmed renewal of the lease, the permission of one core to lead the plant.");
     keeper->counters.database =
-        counters_add(c, "plantcast_core_lease_database_up", "gauge", "1 while PostgreSQL answers requests for the lease.");
-    keeper->counters.standby = counters_add(c, "plantcast_core_standby", "gauge", "1 while a standby follows this core and may take over.");
-    keeper->counters.differs = counters_add(c, "plantcast_core_standby_differs", "gauge",
-                                            "1 while the other core differs in version or configuration and cannot be standby.");
-    keeper->counters.maintenance = counters_add(c, "plantcast_core_standby_maintenance", "gauge",
-                                                "1 while this core leads alone and no other core may take over (plantcast standby).");
+        counters_add(c, "plantcast_core_lease_database_up", "gauge",
+                     "1 while PostgreSQL answers this core's requests for the lease, the permission to lead the plant.");
+    keeper->counters.standby =
+        counters_add(c, "plantcast_core_standby", "gauge", "1 while a standby core follows this leading core and may take over.");
+    keeper->counters.differs =
+        counters_add(c, "plantcast_core_standby_differs", "gauge",
+                     "1 while the other core differs in version or configuration, so that it cannot be the standby.");
+    keeper->counters.maintenance =
+        counters_add(c, "plantcast_core_standby_maintenance", "gauge",
+                     "1 during maintenance (plantcast standby): this core leads alone, and no other core may take over.");
 }
 
 static bool make_timer(struct lease_keeper *keeper)
@@ -594,7 +599,8 @@ static bool make_timer(struct lease_keeper *keeper)
     struct sigevent event = { .sigev_notify = SIGEV_SIGNAL, .sigev_signo = SIGKILL };
     keeper->has_timer = timer_create(CLOCK_BOOTTIME, &event, &keeper->timer) == 0;
     if (!keeper->has_timer)
-        log_err(keeper->params.log, "lease: the watchdog timer cannot be created: %s", strerror(errno));
+        log_err(keeper->params.log,
+                "lease: this core cannot lead, because the timer that stops a leader without lease cannot be created: %s", strerror(errno));
     return keeper->has_timer;
 }
 

@@ -10,7 +10,8 @@
 #include "plant/plant.h"
 
 /* help text of the metric plantcast_core_up, set by core_link and lease_keeper */
-#define CORE_UP_HELP "1 while this core leads and sends readings to this daemon; core=\"this\": 1 while this daemon is the leading core."
+#define CORE_UP_HELP                                                                                                                       \
+    "1 while the core in the label is the leading core and sends readings to this daemon; core=\"this\": this daemon itself leads."
 #define LEASE_MAINTENANCE_FILE "standby-maintenance" /* file in the history folder whose existence means that the standby is in
                                                         maintenance; `plantcast standby` creates it */
 

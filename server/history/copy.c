@@ -31,7 +31,7 @@ static bool sync_file(struct log *log, const char *path)
     int cause = errno;
     if (fd >= 0)
         close(fd);
-    return good || failed(log, path, "cannot be flushed to disk", strerror(cause));
+    return good || failed(log, path, "the copy cannot be flushed to disk", strerror(cause));
 }
 
 /* --- checking and setting the owners of files -------------------------------------------------------------------------------- */
@@ -57,12 +57,12 @@ static const char *fault_of(const char *path, const struct stat *st)
 {
     struct stat folder;
     if (!S_ISREG(st->st_mode))
-        return "the path is not a regular file";
+        return "it is not a regular file";
     if (!stat_folder(path, &folder))
         return strerror(errno);
     if (st->st_uid != folder.st_uid && st->st_uid != geteuid())
         return "the file's owner differs from the owner of its folder";
-    return st->st_nlink > 1 && st->st_uid != folder.st_uid ? "the file has another hard link" : NULL;
+    return st->st_nlink > 1 && st->st_uid != folder.st_uid ? "the file has another hard link, which is not allowed for copied files" : NULL;
 }
 
 /* Opens a file for copying. Refuses symbolic links, and files that fault_of() finds unsafe: not regular, or possibly planted by

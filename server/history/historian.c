@@ -265,7 +265,7 @@ static void take_events(struct historian *historian, const struct now *now, int6
     counter_inc(historian->counters.samples, (int64_t)taken.count);
     counter_inc(historian->counters.lost, (int64_t)taken.lost);
     if (taken.lost)
-        log_err(historian->log, "history: %zu samples lost: the queue is full", taken.lost);
+        log_err(historian->log, "history: %zu samples (readings) were not recorded, because the queue is full", taken.lost);
     taken.count = taken.lost = 0;
     historian->taken = taken;
 }
@@ -504,7 +504,7 @@ static void try_to_write(struct historian *historian, int64_t mono_ns, int64_t u
         historian->retry_ns = mono_ns + historian->retry_after_ns;
         if (!historian->failing)
             log_event(historian->log, LOG_ERROR, EVENT_HISTORY_UNWRITABLE,
-                      "history: cannot be written (%s); new samples are kept in memory", strerror(-error));
+                      "history: the history cannot be written to disk (%s); new samples are kept in memory", strerror(-error));
     } else if (historian->failing) {
         log_event(historian->log, LOG_INFO, EVENT_HISTORY_WRITTEN,
                   "history: writing to disk works again; the samples kept in memory are recorded");
@@ -671,12 +671,14 @@ static void *historian_main(void *arg)
 static void add_counters(struct historian *historian, struct counters *counters)
 {
     historian->counters.samples =
-        counters_add(counters, "plantcast_history_samples_total", "counter", "Samples received by the historian.");
-    historian->counters.points = counters_add(counters, "plantcast_history_points_total", "counter", "Points stored in history.");
-    historian->counters.lost =
-        counters_add(counters, "plantcast_history_lost_total", "counter", "Samples that could not be stored in history.");
-    historian->counters.waiting = counters_add(counters, "plantcast_history_waiting_points", "gauge", "Points waiting to be written.");
-    historian->counters.good = counters_add(counters, "plantcast_history_good", "gauge", "1 while history can be written.");
+        counters_add(counters, "plantcast_history_samples_total", "counter", "Samples (readings) received for recording in the history.");
+    historian->counters.points =
+        counters_add(counters, "plantcast_history_points_total", "counter", "Points (recorded samples) stored in the history.");
+    historian->counters.lost = counters_add(counters, "plantcast_history_lost_total", "counter",
+                                            "Samples (readings) lost because the history could not store them.");
+    historian->counters.waiting = counters_add(counters, "plantcast_history_waiting_points", "gauge",
+                                               "Points (recorded samples) waiting to be written to the history.");
+    historian->counters.good = counters_add(counters, "plantcast_history_good", "gauge", "1 while the history can be written to disk.");
     historian->counters.bytes =
         counters_add(counters, "plantcast_history_bytes", "gauge", "Disk space in bytes used by all history files.");
     historian->counters.free =

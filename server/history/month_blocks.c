@@ -14,7 +14,7 @@ enum { BLOCK_POINTS = 2048, SHARED_TIMES = 32768, BLOCK_COLUMNS = 3 };
 
 static int damaged(struct month_file *file)
 {
-    log_err(file->db.log, "%s: a block of points cannot be decompressed", file->db.path);
+    log_err(file->db.log, "%s: this history file is damaged: a block of recorded points cannot be decompressed", file->db.path);
     return -EBADMSG;
 }
 
@@ -35,7 +35,7 @@ int month_chunk_store(struct month_file *file, struct month_chunk *chunk)
     sqlite3_stmt *add = month_sql(file, SQL_ADD_CHUNK);
     sqlite3_bind_int64(add, 1, chunk->times[chunk->count - 1]);
     sqlite3_bind_blob(add, 2, packed, (int)bytes, SQLITE_STATIC);
-    int error = month_run(file, add, "cannot write the times of points");
+    int error = month_run(file, add, "cannot write the times of recorded points");
     chunk->id = error ? 0 : sqlite3_last_insert_rowid(file->db.handle);
     mem_free(packed);
     mem_free(rows);
@@ -49,7 +49,7 @@ static int load_chunk(struct month_file *file, int64_t id)
         return 0;
     sqlite3_stmt *find = month_sql(file, SQL_CHUNK);
     sqlite3_bind_int64(find, 1, id);
-    int code = database_step(&file->db, find), error = database_fail(&file->db, code, "cannot read the times of points");
+    int code = database_step(&file->db, find), error = database_fail(&file->db, code, "cannot read the times of recorded points");
     mem_free(file->chunk->times);
     *file->chunk = (struct month_chunk){ 0 };
     if (code == SQLITE_ROW)

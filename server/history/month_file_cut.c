@@ -14,7 +14,7 @@ int month_file_size(struct month_file *file, struct month_file_size *size)
         size->shrinks = sqlite3_column_int(statement, 3) != 0;
     }
     sqlite3_reset(statement);
-    return database_fail(&file->db, code, "cannot determine the size of the file");
+    return database_fail(&file->db, code, "cannot determine the size of the history file");
 }
 
 static bool remove_before(void *arg, struct history_points *points)
@@ -38,7 +38,7 @@ static int cut_tag(struct month_file *file, int64_t id, int64_t until_us)
     sqlite3_bind_int64(blocks, 1, id);
     sqlite3_bind_int64(blocks, 2, until_us);
     if (!error)
-        error = month_run(file, blocks, "cannot delete blocks of points");
+        error = month_run(file, blocks, "cannot delete old points from the history file");
     if (!error)
         error = month_blocks_edit(file, id, until_us - 1, until_us - 1, remove_before, &until_us);
     for (int level = 0; level < LEVEL_COUNT && !error; level++) {
@@ -63,7 +63,7 @@ static int cut_tags(struct month_file *file, int64_t until_us)
         error = database_fail(&file->db, code, "cannot read tags");
     sqlite3_bind_int64(chunks, 1, until_us);
     if (!error)
-        error = month_run(file, chunks, "cannot delete the times of points");
+        error = month_run(file, chunks, "cannot delete the times of old points from the history file");
     sqlite3_bind_int64(events, 1, until_us);
     return error ? error : month_run(file, events, "cannot delete events");
 }
@@ -76,7 +76,7 @@ static int cut_outbox(struct month_file *file, int64_t until_us, int64_t *unsent
         return error;
     sqlite3_stmt *cut = month_sql(file, SQL_CUT_OUTBOX);
     sqlite3_bind_int64(cut, 1, until_us);
-    error = month_run(file, cut, "cannot delete unsent points");
+    error = month_run(file, cut, "cannot delete old points that were not sent to PostgreSQL");
     *unsent += error ? 0 : sqlite3_changes(file->db.handle);
     return error;
 }

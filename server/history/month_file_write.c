@@ -135,7 +135,7 @@ static int fit_unit(struct month_file *file, int tag)
     for (size_t i = 0; i < count && !error; i++) {
         char *sql = mem_printf("UPDATE %s SET %s = %s * %.17g + %.17g WHERE tag = %lld", columns[i][0], columns[i][1], columns[i][1],
                                change.factor, change.offset, (long long)id);
-        error = database_exec(&file->db, sql, "cannot convert recorded points to a new unit");
+        error = database_exec(&file->db, sql, "cannot convert recorded points to the tag's new unit");
         mem_free(sql);
     }
     file->rollups[tag].loaded = false;
@@ -213,7 +213,7 @@ int month_file_write(struct month_file *file, const struct history_row *rows, si
 
 int month_file_use_outbox(struct month_file *file)
 {
-    int error = database_exec(&file->db, MONTH_OUTBOX_SCHEMA, "cannot create the outbox for PostgreSQL");
+    int error = database_exec(&file->db, MONTH_OUTBOX_SCHEMA, "cannot create the table `outbox` of points to send to PostgreSQL");
     file->has_outbox = !error;
     return error;
 }
@@ -224,7 +224,7 @@ int month_file_note(struct month_file *file, int64_t t_us, const char *kind, con
     sqlite3_bind_int64(note, 1, t_us);
     database_bind_text(note, 2, kind);
     database_bind_text(note, 3, text);
-    return month_run(file, note, "cannot record an event");
+    return month_run(file, note, "cannot record an event in the history file");
 }
 
 /* --- rolling up --------------------------------------------------------------------------------------------------------------- */
@@ -439,7 +439,7 @@ static int roll_again(struct month_file *file, int tag, int64_t id, int64_t from
         sqlite3_bind_int64(clear, 2, id);
         sqlite3_bind_int64(clear, 3, from_us);
         sqlite3_bind_int64(clear, 4, INT64_MAX);
-        error = month_run(file, clear, "cannot delete outdated aggregates");
+        error = month_run(file, clear, "cannot delete outdated minima, maxima and means from the history file");
     }
     reset_rollups(&rollups, file->tags[tag].step);
     if (!error)
@@ -540,7 +540,7 @@ static int end_lines(struct month_file *file, uint32_t gap_quality, bool sends_g
             *ended_us = rows[count - 1].point.t_us;
     }
     sqlite3_reset(held);
-    int error = database_fail(&file->db, code, "cannot read the newest sample of each tag");
+    int error = database_fail(&file->db, code, "cannot read the newest sample of each tag from the history file");
     for (size_t i = 0, ends = count; i < ends; i++)
         if (rows[i].point.quality != gap_quality) {
             rows[count] = rows[i];
@@ -558,7 +558,7 @@ static int end_lines(struct month_file *file, uint32_t gap_quality, bool sends_g
 
 int month_file_clear_held(struct month_file *file)
 {
-    return month_run(file, month_sql(file, SQL_CLEAR_HELD), "cannot delete the newest samples of a past month");
+    return month_run(file, month_sql(file, SQL_CLEAR_HELD), "cannot delete the list of newest samples from the file of a past month");
 }
 
 int month_file_recover(struct month_file *file, uint32_t gap_quality, bool sends_gaps, int64_t *ended_us)

@@ -182,7 +182,8 @@ int month_outbox_delete(struct month_outbox *outbox, int64_t seq)
 {
     sqlite3_stmt *delete = database_statement(&outbox->db, DELETE);
     sqlite3_bind_int64(delete, 1, seq);
-    return database_fail(&outbox->db, database_run(&outbox->db, delete), "cannot delete points that were sent to PostgreSQL");
+    return database_fail(&outbox->db, database_run(&outbox->db, delete),
+                         "cannot delete points that were sent to PostgreSQL from the table `outbox`");
 }
 
 int month_outbox_shorten(struct month_outbox *outbox, int64_t keep)

@@ -65,7 +65,7 @@ static int update_row(struct month_file *file, enum month_statement which, int64
     sqlite3_bind_int64(row, 1, file->slot);
     sqlite3_bind_int64(row, 2, stamp);
     sqlite3_bind_blob(row, 3, data, (int)bytes, SQLITE_STATIC);
-    return month_run(file, row, "cannot write the points of a second");
+    return month_run(file, row, "cannot write the recorded points of a second");
 }
 
 int month_seconds_write(struct month_file *file, struct month_row *rows, size_t count, struct month_row *held, size_t held_count)
@@ -102,7 +102,7 @@ int month_seconds_clear(struct month_file *file)
 {
     sqlite3_stmt *mark = month_sql(file, SQL_SET_MARK);
     sqlite3_bind_int64(mark, 1, file->seconds->stamp);
-    return month_run(file, mark, "cannot mark the table `second` as empty");
+    return month_run(file, mark, "cannot mark the table `second` of the history file as empty");
 }
 
 /* --- reading ------------------------------------------------------------------------------------------------------------------ */
@@ -143,7 +143,7 @@ static int take_second(struct month_file *file, sqlite3_stmt *second)
     file->seconds->slot = sqlite3_column_int64(second, 0);
     file->seconds->stamp = sqlite3_column_int64(second, 1);
     if (!rows) {
-        log_err(file->db.log, "%s: the points of a second cannot be decompressed", file->db.path);
+        log_err(file->db.log, "%s: this history file is damaged: the recorded points of a second cannot be decompressed", file->db.path);
         return -EBADMSG;
     }
     add_rows(file->seconds, rows, count);

@@ -64,7 +64,7 @@ bool need_seq(const json_t *o, uint32_t *out, struct message_error *error)
 {
     const json_t *value = json_object_get(o, "seq");
     if (!json_is_integer(value) || json_integer_value(value) < 1 || json_integer_value(value) > UINT32_MAX) {
-        message_fail(error, "bad_field", "seq: expected a whole number from 1 to 4294967295");
+        message_fail(error, "bad_field", "seq: expected the number of a message or frame, a whole number from 1 to 4294967295");
         return false;
     }
     *out = (uint32_t)json_integer_value(value);

@@ -156,7 +156,8 @@ static bool find_baseline(const struct params_context *context, const struct par
     if (change->baseline <= BASELINE_NONE)
         return true;
     if (!context->baselines || (change->baseline != BASELINE_NAMED && !context->snapshot)) {
-        message_fail(error, "bad_field", "baseline: this request cannot use baselines");
+        message_fail(error, "bad_field",
+                     "baseline: not possible here, because this request has no saved baselines (readings to compare with) or no readings");
         return false;
     }
     if (change->baseline == BASELINE_SET && !baselines_may_set(context->baselines, change->baseline_name)) {

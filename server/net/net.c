@@ -126,7 +126,7 @@ static const char *core_standing(const struct server_context *server)
         return NULL;
     if (!core_end_leads(server))
         return server->session_context.core_up ? "standby: follows the core that leads" : "standby: not connected to a core that leads";
-    return lease_keeper_is_alone(keeper)           ? "leads; standby: maintenance, no other core takes over"
+    return lease_keeper_is_alone(keeper)           ? "leads alone (maintenance): no other core takes over"
            : !renderers_have_standby(server)       ? "leads; no standby follows this core: the log says why"
            : renderers_standby_lacks_files(server) ? "leads; a standby follows, but its models differ: the log says why"
                                                    : "leads; a standby follows";
@@ -164,7 +164,7 @@ static void tick(struct net *net, int64_t now_ns)
     time_start(&net->server, now_ns);
     if (atomic_load(&net->drain) && !net->server.life.drain_ns) {
         net->server.life.drain_ns = now_ns;
-        log_info(net->server.params.log, "drained: moving %d sessions to other nodes within 12 s", net->server.streams.count);
+        log_info(net->server.params.log, "drain (SIGUSR1): moving %d sessions to other daemons within 12 s", net->server.streams.count);
     }
     look_at_files(net, now_ns);
     look_around(net, now_ns);
@@ -180,7 +180,7 @@ static void tick(struct net *net, int64_t now_ns)
         streams_on_readings(&net->server, false, true);
     if (core_loss_on_tick(&net->server.life.core_loss, has_core(&net->server), now_ns))
         log_warn(net->server.params.log,
-                 "no connection to a core for %d s: moving sessions to the other nodes that the load balancer reports as available",
+                 "no connection to a core for %d s: moving sessions to the other daemons that the load balancer reports as available",
                  (int)((now_ns - net->server.life.core_loss.lost_ns) / NS_PER_S));
     streams_on_tick(&net->server);
     http_on_tick(&net->server, now_ns);
@@ -352,13 +352,13 @@ static void raise_file_limit(struct log *log, const struct quotas *quotas)
     if (getrlimit(RLIMIT_NOFILE, &limit) != 0)
         return;
     if (limit.rlim_max != RLIM_INFINITY && limit.rlim_max < wanted) {
-        log_warn(log, "files: this process may open %llu files, but --limit connections=%lld needs %llu; raise ulimit -n or LimitNOFILE=",
+        log_warn(log, "this process may open only %llu files, but --limit connections=%lld needs %llu; raise ulimit -n or LimitNOFILE=",
                  (unsigned long long)limit.rlim_max, (long long)quotas->at[QUOTA_CONNECTIONS], (unsigned long long)wanted);
         wanted = limit.rlim_max;
     }
     limit.rlim_cur = wanted;
     if (setrlimit(RLIMIT_NOFILE, &limit) != 0)
-        log_warn(log, "files: the limit of open files cannot be raised: %s", strerror(errno));
+        log_warn(log, "the limit of open files of this process cannot be raised: %s", strerror(errno));
 }
 
 /* Checks that the port can be bound, and logs the reason if not: libwebsockets does not report why it cannot listen. */
@@ -368,7 +368,7 @@ bool net_port_free(struct log *log, const char *address, int port)
     struct sockaddr_in four = { .sin_family = AF_INET, .sin_port = htons((uint16_t)port) };
     bool is_six = strchr(address, ':') != NULL;
     if (inet_pton(is_six ? AF_INET6 : AF_INET, address, is_six ? (void *)&six.sin6_addr : (void *)&four.sin_addr) != 1) {
-        log_err(log, "listen %s: not an IP address", address);
+        log_err(log, "--listen: %s is not an IP address", address);
         return false;
     }
     int fd = socket(is_six ? AF_INET6 : AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0), on = 1;
@@ -376,7 +376,7 @@ bool net_port_free(struct log *log, const char *address, int port)
                 bind(fd, is_six ? (struct sockaddr *)&six : (struct sockaddr *)&four, is_six ? sizeof(six) : sizeof(four)) == 0 &&
                 listen(fd, 1) == 0;
     if (!good)
-        log_err(log, "listen %s port %d: %s%s", address, port, strerror(errno),
+        log_err(log, "cannot listen on address %s, port %d: %s%s", address, port, strerror(errno),
                 errno == EADDRINUSE ? "; stop the program that uses this port, or choose another port with --port" : "");
     if (fd >= 0)
         close(fd);
@@ -387,36 +387,42 @@ static void add_counters(struct server_context *server)
 {
     struct counters *c = server->params.counters;
     latency_stages_init(&server->latency, c);
-    server->counters.sessions = counters_add(c, "plantcast_sessions", "gauge", "Connected clients.");
+    server->counters.sessions =
+        counters_add(c, "plantcast_sessions", "gauge", "Clients connected now: pages and programs that show live pictures.");
     server->counters.sessions_all = counters_add(c, "plantcast_sessions_total", "counter", "Client sessions opened since the start.");
     server->counters.refused = counters_add(c, "plantcast_sessions_refused_total", "counter", "Client sessions refused.");
-    server->counters.connections = counters_add(c, "plantcast_connections", "gauge", "TCP connections.");
-    server->counters.busy =
-        counters_add(c, "plantcast_drawing_busy_percent", "gauge", "Percentage of the render thread's time spent on live views.");
-    server->counters.frames = counters_add(c, "plantcast_frames_sent_total", "counter", "Frames sent.");
-    server->counters.frame_bytes = counters_add(c, "plantcast_frame_bytes_total", "counter", "Bytes of frames sent.");
-    server->counters.depth_bytes =
-        counters_add(c, "plantcast_depth_bytes_total", "counter",
-                     "Bytes of depth data sent, with which pages move the current picture until the next one arrives.");
+    server->counters.connections = counters_add(c, "plantcast_connections", "gauge", "TCP connections open now.");
+    server->counters.busy = counters_add(c, "plantcast_drawing_busy_percent", "gauge",
+                                         "Percentage of time in which the thread that draws pictures was busy with live views.");
+    server->counters.frames = counters_add(c, "plantcast_frames_sent_total", "counter", "Frames (pictures of live views) sent to clients.");
+    server->counters.frame_bytes =
+        counters_add(c, "plantcast_frame_bytes_total", "counter", "Bytes of frames (pictures of live views) sent to clients.");
+    server->counters.depth_bytes = counters_add(
+        c, "plantcast_depth_bytes_total", "counter",
+        "Bytes of depth data sent to pages, which use it to move the current picture with the camera until the next one arrives.");
     server->counters.dropped =
         counters_add(c, "plantcast_frames_dropped_total", "counter", "Frames replaced by a newer frame before they were sent.");
-    server->counters.given_up = counters_add(c, "plantcast_frames_given_up_total", "counter", "Frames whose sending was abandoned.");
+    server->counters.given_up = counters_add(c, "plantcast_frames_given_up_total", "counter",
+                                             "Frames that were not sent completely, because the client did not read them.");
     server->counters.stalled =
         counters_add(c, "plantcast_sessions_stalled_total", "counter", "Sessions closed because the client stopped reading.");
     server->counters.messages = counters_add(c, "plantcast_messages_total", "counter", "Messages received from clients.");
-    server->counters.errors = counters_add(c, "plantcast_message_errors_total", "counter", "Messages from clients answered with an error.");
+    server->counters.errors =
+        counters_add(c, "plantcast_message_errors_total", "counter", "Messages from clients that the daemon answered with an error.");
     server->counters.clock_set = counters_add(c, "plantcast_clock_synchronised", "gauge", "1 while this machine's clock is synchronised.");
     server->counters.clock_error =
         counters_add_seconds(c, "plantcast_clock_error_seconds", "gauge", "Maximum error of this machine's clock; 0: unknown.");
     server->counters.clock_leap =
         counters_add(c, "plantcast_clock_leap_seconds", "gauge", "Leap second announced for the end of the month: 1, -1 or 0.");
     server->counters.logins_wrong = counters_add(c, "plantcast_logins_wrong_total", "counter", "Log-ins with an unknown or expired token.");
-    server->counters.logins_held = counters_add(c, "plantcast_logins_held_total", "counter",
-                                                "Log-ins refused without a check, because their address was rate-limited.");
-    server->counters.logins_slowed =
-        counters_add(c, "plantcast_logins_slowed_addresses", "gauge", "Addresses rate-limited after ten wrong tokens within a minute.");
+    server->counters.logins_held =
+        counters_add(c, "plantcast_logins_held_total", "counter",
+                     "Log-ins refused unchecked, because their client address is rate-limited after many wrong tokens.");
+    server->counters.logins_slowed = counters_add(c, "plantcast_logins_slowed_addresses", "gauge",
+                                                  "Client addresses that are rate-limited after ten wrong tokens within a minute.");
     server->counters.renderers =
-        counters_add(c, "plantcast_renderers", "gauge", "Renderers connected to this core; the standby is not counted.");
+        counters_add(c, "plantcast_renderers", "gauge",
+                     "Renderers (daemons that draw for this core) that are connected now; the standby core is not counted.");
     server->counters.standby_files =
         counters_add(c, "plantcast_core_standby_differing_files", "gauge",
                      "Number of the standby's files (1 plant file, 1 tag list, 1 for all models) that differ from this core's.");
@@ -458,7 +464,8 @@ static bool open_context(struct net *net)
         return false;
     server->lws = lws_create_context(&info);
     if (!server->lws) {
-        log_err(server->params.log, "listen %s port %d: libwebsockets could not start", server->params.address, server->params.port);
+        log_err(server->params.log, "cannot listen on address %s, port %d: libwebsockets could not start", server->params.address,
+                server->params.port);
         return false;
     }
     net->vhost = lws_get_vhost_by_name(server->lws, "plantcast");

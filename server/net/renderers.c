@@ -330,7 +330,7 @@ static bool send_message(struct renderer_peer *renderer, json_t *message)
 /* Tells the renderer that this core is only a standby, so that it looks for the leading core. Returns false if the connection is gone. */
 static bool send_standby(struct renderer_peer *renderer)
 {
-    renderer->close_text = "this core is standby";
+    renderer->close_text = "this core is the standby: connect to the leading core";
     return send_message(renderer, json_pack("{s:s}", "type", "standby"));
 }
 
@@ -365,7 +365,7 @@ static bool send_refusal(const struct server_context *server, struct renderer_pe
 {
     bool votes = renderer->state == RENDERER_VOTES;
     renderer->refusal_sent = true;
-    renderer->close_text = votes ? NULL : "this node was refused";
+    renderer->close_text = votes ? NULL : "the core refused this node: the message before says why";
     /* The member takes_over says whether the refused core may still take the lead. A core that is refused only because its
        version differs may, because the two cores of a pair are upgraded one after the other. */
     json_t *message = json_pack("{s:s,s:s,s:b,s:b}", "type", "refused", "why", renderer->refusal, "votes", votes, "takes_over",
@@ -701,7 +701,7 @@ static const char *verify_person(const struct server_context *server, const stru
         out->role = ROLE_ENGINEER;
         return NULL;
     }
-    return id_token ? "the core cannot identify the signed-in user because it runs without --openid"
+    return id_token ? "the core cannot identify the signed-in user, because the core runs without --openid"
                     : "the core cannot verify the user: use a token, or sign in";
 }
 
@@ -769,7 +769,9 @@ static const char *on_message(struct server_context *server, struct renderer_pee
     else if (!strcmp(type, "pairing") && server->logins.tokens)
         pairings_ask_for(server->params.plant.pairings, message, clock_mono_ns());
     json_decref(message);
-    return json_array_size(renderer->answers) > MAX_ANSWERS ? "the renderer or standby does not read this core's answers" : why;
+    return json_array_size(renderer->answers) > MAX_ANSWERS
+               ? "too many unread answers: the renderer or standby does not read this core's answers"
+               : why;
 }
 
 /* Handles bytes received from a renderer or standby. Returns -1 if the connection must end. */

@@ -238,7 +238,7 @@ static void watch_stall(struct server_context *server, struct stream *stream, in
     if (state != PACER_DEAD)
         return;
     counter_inc(server->counters.stalled, 1);
-    close_with(stream, STREAM_CLOSE_STALLED, "no frame was acknowledged for 15 s");
+    close_with(stream, STREAM_CLOSE_STALLED, "closed, because the client acknowledged no frame for 15 s");
     /* closes the socket after a timeout, because the client may not even read the close frame */
     lws_set_timeout(stream->wsi, PENDING_TIMEOUT_CLOSE_SEND, LAST_WORDS_S);
 }
@@ -269,9 +269,9 @@ static void move_elsewhere(const struct server_context *server, const struct str
 {
     int64_t drain_ns = server->life.drain_ns, moves_ns = server->life.core_loss.moves_ns;
     if (drain_ns && is_due(stream, drain_ns + DRAIN_DELAY_NS, DRAIN_NS, now_ns))
-        session_close(stream->session, LWS_CLOSE_STATUS_GOINGAWAY, "this node is being drained; retry after 0 s");
+        session_close(stream->session, LWS_CLOSE_STATUS_GOINGAWAY, "this daemon moves its sessions to other daemons; retry after 0 s");
     if (moves_ns && connection_of(stream->wsi)->forwarded && is_due(stream, moves_ns, MOVE_NS, now_ns))
-        session_close(stream->session, LWS_CLOSE_STATUS_GOINGAWAY, "this node has lost its core; retry after 0 s");
+        session_close(stream->session, LWS_CLOSE_STATUS_GOINGAWAY, "this daemon has lost its core and shows no readings; retry after 0 s");
 }
 
 void streams_on_tick(struct server_context *server)
@@ -287,7 +287,7 @@ void streams_on_tick(struct server_context *server)
         session_on_tick(stream->session, now_ns);
         move_elsewhere(server, stream, now_ns);
         if (stream->in_count > 0 && now_ns - stream->in_begin_ns > patience_ns)
-            session_close(stream->session, 1008, "a message was not completed in time");
+            session_close(stream->session, 1008, "the client did not complete a message in time");
         count(server, stream);
         watch_stall(server, stream, now_ns);
         pump(server, stream);

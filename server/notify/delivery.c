@@ -198,7 +198,7 @@ char *delivery_start(struct delivery *delivery, int recipient, char *body, size_
     if (!why) {
         curl_easy_setopt(transfer->handle, CURLOPT_PRIVATE, (void *)transfer);
         if (curl_multi_add_handle(delivery->multi, transfer->handle) != CURLM_OK)
-            why = mem_strdup("libcurl does not accept the transfer");
+            why = mem_strdup("libcurl could not start to send the message");
     }
     if (why)
         end_transfer(delivery, transfer);

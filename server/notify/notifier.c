@@ -230,13 +230,17 @@ static void add_counters(struct notifier *notifier)
     notifier->failing = mem_array(notify->recipient_count + 1, sizeof(*notifier->failing));
     for (size_t i = 0; i < notify->recipient_count; i++) {
         const char *id = notify->recipients[i].id;
-        notifier->counters[i].sent = add_counter(notifier, "plantcast_notify_sent_total", id, "counter", "Messages delivered.");
-        notifier->counters[i].failed = add_counter(notifier, "plantcast_notify_failed_total", id, "counter", "Deliveries that failed.");
-        notifier->counters[i].waiting = add_counter(notifier, "plantcast_notify_waiting", id, "gauge", "Alarms waiting for notification.");
+        notifier->counters[i].sent =
+            add_counter(notifier, "plantcast_notify_sent_total", id, "counter", "Alarm messages delivered, by recipient.");
+        notifier->counters[i].failed = add_counter(notifier, "plantcast_notify_failed_total", id, "counter",
+                                                   "Attempts to deliver an alarm message that failed, by recipient.");
+        notifier->counters[i].waiting =
+            add_counter(notifier, "plantcast_notify_waiting", id, "gauge", "Alarms whose message waits for delivery, by recipient.");
     }
-    notifier->lost = counters_add(counters, "plantcast_notify_lost_total", "counter", "Alarm notifications lost.");
-    notifier->spool_good =
-        counters_add(counters, "plantcast_notify_spool_good", "gauge", "1 while waiting notifications can be stored on disk.");
+    notifier->lost =
+        counters_add(counters, "plantcast_notify_lost_total", "counter", "Alarm messages lost: not stored, or not delivered within a day.");
+    notifier->spool_good = counters_add(counters, "plantcast_notify_spool_good", "gauge",
+                                        "1 while alarm messages that wait for delivery can be stored on disk.");
     counter_set(notifier->spool_good, 1);
 }
 

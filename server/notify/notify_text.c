@@ -160,7 +160,8 @@ static void add_body(struct text *out, const struct plant *plant, const struct o
     if (message->count > NOTIFY_LINES)
         text_add(out, "... and %zu more\r\n", message->count - NOTIFY_LINES);
     if (message->left_out > 0)
-        text_add(out, "\r\n%lld more alarms were dropped while messages could not be delivered.\r\n", (long long)message->left_out);
+        text_add(out, "\r\n%lld more alarms are not listed: they were dropped while messages could not be delivered.\r\n",
+                 (long long)message->left_out);
     text_add(out, "\r\nTime zone of all times: %s.", plant->time_zone);
     if (plant->notify->link)
         text_add(out, " %s", plant->notify->link);

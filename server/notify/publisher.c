@@ -245,9 +245,10 @@ struct publisher *publisher_start(const struct publisher_params *params)
     publisher->stop_fd = eventfd(0, EFD_CLOEXEC);
     publisher->client_id = make_client_id(params->plant->publish);
     publisher->snapshot = snapshot_create(params->plant->tag_count);
-    publisher->up = counters_add(params->counters, "plantcast_publish_up", "gauge", "1 while the broker accepts readings and alarms.");
-    publisher->messages =
-        counters_add(params->counters, "plantcast_publish_messages_total", "counter", "Readings and alarms published to the broker.");
+    publisher->up =
+        counters_add(params->counters, "plantcast_publish_up", "gauge", "1 while the MQTT broker accepts published readings and alarms.");
+    publisher->messages = counters_add(params->counters, "plantcast_publish_messages_total", "counter",
+                                       "Messages with readings or alarms published to the MQTT broker.");
     make_topics(publisher);
     int error = publisher->stop_fd < 0 ? errno : pthread_create(&publisher->thread, NULL, publisher_main, publisher);
     publisher->started = !error;

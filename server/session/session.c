@@ -55,7 +55,7 @@ void session_check_token(struct session *session, int64_t now_ns, int64_t now_ut
     struct message_error alone = { 0 };
     if (!session->close.code && session_left_alone(session, now_ns, &alone)) {
         session_reply_error(session, &alone);
-        session_close(session, 1008, "locked: no input at this page");
+        session_close(session, 1008, "locked: no input at this page for the time of --lock-after; sign in again");
         return;
     }
     enum role role = role_now(session, now_utc_ns);
@@ -129,7 +129,7 @@ static bool on_ack(struct session *session, const struct message *message, int64
         session_on_shown(session);
     if (ack != PACER_ACK_NEVER_SENT)
         return true;
-    message_fail(error, "bad_field", "seq: frame %u was never sent", message->seq);
+    message_fail(error, "bad_field", "seq: the client acknowledged frame %u, which was never sent", message->seq);
     return false;
 }
 
@@ -349,7 +349,7 @@ static bool hand_on(struct session *session, const struct message *message, cons
     if (!context->hand_on || !message_is_handed_on(message))
         return false;
     if (!context->hand_on(context->hand_on_arg, session, text)) {
-        message_fail(error, "core_lost", "not done: the core cannot be reached");
+        message_fail(error, "core_lost", "not done: the daemon that polls the devices (core) cannot be reached");
         session_reply_error(session, error);
     }
     return true;
@@ -360,7 +360,7 @@ void session_too_fast(struct session *session, int64_t count, const char *whose)
     struct message_error error = { 0 };
     if (session->rate.exceeded)
         return;
-    message_fail(&error, "too_fast", "more than %lld messages %swithin a second: further messages are read a second later",
+    message_fail(&error, "too_fast", "too many messages: more than %lld %swithin a second: further messages are read a second later",
                  (long long)count, whose);
     session->rate.exceeded = true;
     session_reply_error(session, &error);

@@ -278,7 +278,7 @@ bool session_choose_signed(struct session *session, enum signed_frames frames, s
         return false;
     }
     if (frames && !decodes(session, WIRE_CODEC_PNG)) {
-        message_fail(error, "bad_field", "signed: signed frames are PNG: add png to codecs");
+        message_fail(error, "bad_field", "signed: signed frames are PNG pictures: add png to codecs");
         return false;
     }
     session->demand.any |= session->codec.signed_frames != frames;

@@ -114,7 +114,7 @@ static bool begin_view(struct session *session, const struct message *message, c
                        struct message_error *error)
 {
     if (!resumed && (message->width_px == 0 || message->codecs.count == 0)) {
-        message_fail(error, "bad_field", "resume: the view is unknown or no longer kept: send width, height and codecs");
+        message_fail(error, "bad_field", "resume: the daemon no longer keeps this view: send hello with width, height and codecs");
         return false;
     }
     if (resumed) {
@@ -149,7 +149,7 @@ static void take_over(struct session *session, const struct resumed *resumed, co
 {
     resumes_forget(session->context->resumes, secret);
     if (resumed->live)
-        session_close(resumed->live, 1000, "a new connection took over this view");
+        session_close(resumed->live, 1000, "another connection of the same client took over this view");
 }
 
 /* Finds the view that a returning client resumes: by the secret if this daemon kept the view, otherwise from the signed view

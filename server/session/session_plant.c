@@ -177,7 +177,7 @@ void session_take_plant(struct session *session, const char *carried)
     if (had_pictures != !session->scope.tags)
         /* in the new plant, the display shows pictures and did not before, or the reverse. Closes the session, so that the
            client connects again and gets the right picture size */
-        session_close(session, 1012, "the panes of the display have changed");
+        session_close(session, 1012, "the plant file has changed what this display shows: connect again");
     struct message_error error = { 0 };
     if (session->identity.holder.views[0] && !session_scope_view(session, session->scope.named, &session->view, &error))
         session_reply_error(session, &error);
@@ -186,7 +186,7 @@ void session_take_plant(struct session *session, const char *carried)
         mem_free(session->tile.told);
         session->tile.told = NULL;
         if (!session_tile_fit(session, &session->tile.place, layout->display_px[0], layout->display_px[1], &session->view, layout))
-            session_close(session, 1012, "the plant file no longer has this display's tile");
+            session_close(session, 1012, "the changed plant file no longer has a tile for this display");
     }
     session->owed.welcome = session->owed.tags_all = session->owed.status = session->demand.any = true;
     session->owed.params = false;

@@ -22,7 +22,7 @@ static void act_as(struct session *session, const struct session_person *person,
     if (!message_parse(session->context->plant, text, strlen(text), &message, &error)) {
         session_reply_error(session, &error);
     } else if (!message_is_handed_on(&message)) {
-        message_fail(&error, "not_allowed", "a client of a renderer must not send this message");
+        message_fail(&error, "not_allowed", "this message is not allowed from a client of a renderer (daemon that draws for a core)");
         session_reply_error(session, &error);
     } else if (person->refusal) {
         message_fail(&error, "not_allowed", "not done: %s", person->refusal);

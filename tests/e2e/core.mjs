@@ -248,7 +248,7 @@ test('`plantcast drain` sends a daemon\'s sessions to another node, and signals 
     assert.equal(runProgram('plantcast', ['drain', pid, '--wait', '0']).code, 0);
     promise(t, 'until `plantcast drain` returns', performance.now() - began, 5000);
     await client.until('its end', ({ closed }) => closed);
-    await c.program.line(/drained: moving 1 sessions to other nodes/);
+    await c.program.line(/drain \(SIGUSR1\): moving 1 sessions to other daemons/);
     await c.stop();
     assert.equal(runProgram('plantcast', ['drain', pid]).code, 1);
 });

@@ -42,7 +42,7 @@ test('files that the core refuses change nothing at the renderer', options, asyn
     const before_ = await configuration(renderer);
     change('max: 101 }', 'max: -1 }');
     core.program.child.kill('SIGHUP');
-    await Promise.all([core, renderer].map(({ program }) => program.line(/reload: keeping the configuration/)));
+    await Promise.all([core, renderer].map(({ program }) => program.line(/reload: refused, so the daemon keeps the configuration/)));
     assert.equal(await configuration(renderer), before_);
     await until('readings', isThere);
 });

@@ -177,7 +177,7 @@ test('every query argument counts: the 64th, one after an empty one, and 65 are 
         for (const [last, status] of [['look=flat', 200], ['look=none', 400]])
             assert.equal((await ask(count, last)).status, status, `${count} arguments, ${last}`);
     const more = await ask(65, 'look=flat');
-    assert.deepEqual([more.status, more.body.toString()], [400, 'the query has more than 64 arguments\n']);
+    assert.deepEqual([more.status, more.body.toString()], [400, 'the URL\'s query has more than 64 arguments\n']);
     for (const [query, status] of [['&&look=none', 400], ['&look=flat&&power=x', 400], ['&token=x', 400], ['look=flat&&token=x', 400],
         ['&look=flat&', 200], ['', 200]])
         assert.equal((await get(plant.port, `/snapshot.png?${query}`)).status, status, query);

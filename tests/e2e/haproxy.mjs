@@ -194,7 +194,7 @@ test('a drained node sends its sessions to the other node one by one, and gets n
     t.diagnostic(`${viewers.length} sessions left from ${Math.min(...lost).toFixed(1)} to ${Math.max(...lost).toFixed(1)} s ` +
         'after it was said');
     assert.ok(Math.max(...lost) - Math.min(...lost) > 4, `the sessions were moved one after the other: ${lost}`);
-    assert.ok(viewers.every(({ reason }) => reason === 'this node is being drained; retry after 0 s'));
+    assert.ok(viewers.every(({ reason }) => reason === 'this daemon moves its sessions to other daemons; retry after 0 s'));
     await until('the drained node not to be in use', async () => /^DOWN/.test((await proxy.servers()).r2.status));
 });
 

@@ -72,7 +72,7 @@ test('on a volume that becomes read-only the daemon runs on and reports it; unsa
         await take(plant, 77);
         await until('plantcast_history_good is 0', async () => await gauge(plant, 'plantcast_history_good') === 0);
         await plant.daemon.line(/history-[\d-]+\.sqlite: .*error$/m);
-        await plant.daemon.line(/history: cannot be written \(/);
+        await plant.daemon.line(/history: the history cannot be written to disk \(/);
         assert.equal((await get(plant.port, '/snapshot.png?width=320&height=200')).status, 200, 'pictures are still drawn');
         assert.equal((await get(plant.port, '/readyz')).status, 200);
         await take(plant, 33);

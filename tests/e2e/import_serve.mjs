@@ -230,7 +230,7 @@ test('a failed import gives one error line, and the previous plant stays', optio
         assert.equal((await served.idle()).failed, null);
         const kept = ['plant.yaml', 'tags.csv', 'matches.csv'].map((name) => served.read(name));
         await served.post('/decide', 'Tag,Status,Asset\nTT-9999,sure,nowhere\n');
-        assert.match((await served.idle()).failed, /TT-9999: no asset is called 'nowhere'/);
+        assert.match((await served.idle()).failed, /TT-9999: no asset of the plant is called 'nowhere'/);
         assert.deepEqual(['plant.yaml', 'tags.csv', 'matches.csv'].map((name) => served.read(name)), kept);
     } finally {
         await served.destroy();
@@ -292,7 +292,7 @@ test('an import that fails or is cancelled after placing its models restores the
             // While the import holds the folder's lock, other Plantcast programs refuse to change the folder. A program that
             // ignores the lock and writes a file (matches.csv) does not lose it when the import is cancelled.
             const other = spawnSync(join(BIN, 'plantcast'), ['match', served.folder, join(served.folder, 'exports/tags.csv')]);
-            assert.match(String(other.stderr), /^plantcast match: .*: plantcastd \(process \d+\) is using the folder\n$/);
+            assert.match(String(other.stderr), /^plantcast match: .*: plantcastd \(process \d+\) is using the plant's folder\n$/);
             if (saves)
                 writeFileSync(join(served.folder, 'matches.csv'), 'mine\n');
             rmSync(wait);
@@ -313,7 +313,8 @@ test('an import that fails or is cancelled after placing its models restores the
         await bring([...NAMES, 'X-3']);
         const { failed } = await served.idle();
         held.stdin.end();
-        assert.match(failed, /^the plant's folder .*: (flock|sh) \(process \d+\) is using the folder; try again later$/);
+        assert.match(failed, new RegExp('^the plant\'s folder .* cannot be locked: (flock|sh) \\(process \\d+\\) is using the plant\'s ' +
+            'folder; try again later$'));
         assert.deepEqual(files(), now);
         assert.equal(readdirSync(served.folder).filter((name) => /^\.(import|revision\.)/.test(name)).length, 0);
     } finally {

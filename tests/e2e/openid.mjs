@@ -152,7 +152,7 @@ test('each untrustworthy answer of the provider is refused with its reason, and 
         ['alg none', /not signed/, (claims, header) => { header.alg = 'none'; }, () => ''],
         ['alg none, with a signature', /not signed/, (claims, header) => { header.alg = 'none'; }],
         ['alg HS256', /not signed/, (claims, header) => { header.alg = 'HS256'; }],
-        ['wrong audience', /another audience/, (claims) => { claims.aud = 'other'; }],
+        ['wrong audience', /another client \(aud\)/, (claims) => { claims.aud = 'other'; }],
         ['expired', /expired/, (claims) => { claims.exp = now() - 120; }],
         ['from the future', /time of issue of the ID token is implausible/, (claims) => { claims.iat = now() + 300; }],
         ['wrong issuer', /another issuer/, (claims) => { claims.iss = 'https://evil.example'; }],
@@ -332,7 +332,7 @@ test("provider errors and cancelled sign-ins slow nobody, and tokens still work"
             assert.equal((await (await beginFrom('127.0.0.7'))('code=x')).statusCode, 403, JSON.stringify(fault));
     }
     provider.fault = null;
-    assert.match(plant.daemon.said, /the provider refuses the request/);
+    assert.match(plant.daemon.said, /the identity provider refuses the request/);
     for (let i = 0; i < 20; i++)
         assert.equal((await (await beginFrom('127.0.0.7'))(`error=${errors[i % 2]}`)).statusCode, 403);
     assert.equal((await askFrom('127.0.0.7', '/api/v1/me', { Authorization: `Bearer ${token}` })).statusCode, 200);
@@ -468,7 +468,7 @@ test('a user who leaves all pages idle is signed out, after a notice', {
         await shoot(page, 'locked');
         await page.reload();
         await page.locator('#token .sign-in').waitFor();
-        await recorded('the lock', (line) => line.event === 'leave' && line.why === 'no activity at the page');
+        await recorded('the lock', (line) => line.event === 'leave' && line.why === 'the user was inactive for the time of --lock-after');
         await page.locator('#token .sign-in').click();
         await waitForPicture(page);
     } finally {

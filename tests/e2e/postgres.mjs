@@ -217,12 +217,12 @@ test('no point is lost while the server is killed or frozen; live readings do no
     const from = await startSending();
     await server.kill();
     await until('it is said', async () => await metric('postgres_up') === 0);
-    await plant.daemon.line(/cannot write to PostgreSQL \(.*refused.*\); points are queued in .*, at most 20000000/);
+    await plant.daemon.line(/PostgreSQL does not accept recorded points \(.*refused.*\); the points are queued in .*, at most 20000000/);
     await waiting(50);
     await sleep(AWAY_MS);
     const waited = await metric('postgres_waiting_points');
     await server.restart();
-    await plant.daemon.line(/PostgreSQL accepts points again/, 60000);
+    await plant.daemon.line(/PostgreSQL accepts recorded points again/, 60000);
     server.freeze();
     const age = async () => Math.max(...(await (await fetch(`http://127.0.0.1:${plant.port}/api/v1/tags?count=10`)).json()).tags
         .map((tag) => tag.age_ms));
@@ -287,10 +287,10 @@ test('a full disk of the server loses no point', options, async (t) => {
     } catch (error) {
         assert.equal(error.code, 'ENOSPC');
     }
-    await plant.daemon.line(/cannot write to PostgreSQL \(.*No space left on device\)/, 90000);
+    await plant.daemon.line(/PostgreSQL does not accept recorded points \(.*No space left on device\)/, 90000);
     await until('it is counted', async () => await metric('postgres_up') === 0);
     rmSync(join(disk, 'filler'));
-    await plant.daemon.line(/PostgreSQL accepts points again/, 60000);
+    await plant.daemon.line(/PostgreSQL accepts recorded points again/, 60000);
     await sent(200);
     assert.ok(await assertSame(from) > 20);
     await plant.daemon.stop();

@@ -111,7 +111,7 @@ test('a start that prepares the plant asks for more time meanwhile, and ends on 
         await assert.rejects(get(port, '/readyz'), { code: 'ECONNREFUSED' }, 'the daemon is not ready yet');
         assert.doesNotMatch(service.out, /READY=1/);
         assert.equal(await service.stop(), 0, service.err);
-        assert.match(service.err, /stopping; the next start continues to prepare the plant/);
+        assert.match(service.err, /stopping while plantcast-prep prepares the plant; the next start continues/);
     } finally {
         plant = was;
         await tiny.destroy();
@@ -132,7 +132,7 @@ test('as the first process of a container, the daemon ends on SIGTERM while it p
         const [first] = readFileSync(`/proc/${child.pid}/task/${child.pid}/children`, 'utf8').split(' ');
         process.kill(Number(first), 'SIGTERM');
         assert.equal(await ended, 0, said);
-        assert.match(said, /stopping; the next start continues to prepare the plant/);
+        assert.match(said, /stopping while plantcast-prep prepares the plant; the next start continues/);
     } finally {
         await tiny.destroy();
     }
@@ -152,7 +152,7 @@ for (const [thread, what] of [['render', 'the render thread'], ['plantcastd', 't
         console.log(`# ${what}: ended after ${(took_ms / 1000).toFixed(1)} s`);
         promise(t, 'until it ended', took_ms, 1000 * WITHIN_S);
         if (thread === 'render')
-            assert.match(service.err, /render thread: no progress; the service manager will start the daemon again/);
+            assert.match(service.err, /the thread that draws pictures makes no progress; the service manager will start the daemon again/);
     });
 
 test('during a restart connections wait in the manager\'s socket; clients are told when the daemon will be back',

@@ -61,7 +61,7 @@ test('of two cores one leads, the other follows and is not ready; a renderer fin
     await until('readings at the renderer', async () => (await renderer.tags())['TI-1'].value === 50);
     const answer = await two.other(core).node.fetch('/readyz');
     assert.equal(answer.status, 503);
-    assert.match(await answer.text(), /is standby/);
+    assert.match(await answer.text(), /this core is the standby/);
     assert.equal((await two.other(core).node.fetch('/healthz')).status, 200);
     assert.equal(await core.node.metric('plantcast_core_active'), 1);
     assert.equal(await two.other(core).node.metric('plantcast_core_active'), 0);
@@ -167,7 +167,7 @@ test('history is complete: database and API agree, and only the take-overs are g
     // [core, how often it must have read the points of another core's lead]: twice for the core whose standby was cut off and
     // came back, once for the other
     for (const [one, often] of [[core, 2], [two.other(core), 1]])
-        await until('what it lacked is read', () => one.program.said.split('polls devices and owns').pop()
+        await until('what it lacked is read', () => one.program.said.split('now polls devices and evaluates').pop()
             .match(/read \d+ points from PostgreSQL, covering the \d+ s in which another core led/g)?.length >= often, 60);
     const to = Math.floor(Date.now() / 1000 - 3) * 1e6;
     const all = new Map(server.ask(`SELECT (extract(epoch FROM s.t) * 1000000)::bigint, s.v, s.q FROM plantcast.sample s
@@ -254,14 +254,14 @@ test('a leader that shuts down properly hands the lease to the other core', opti
     const core = await two.leader();
     await two.followed(core);
     const { pause_ms } = await two.takeOver(t, core, kill(core, 'SIGTERM'));
-    assert.match(core.program.said, /lease: handed over to/);
+    assert.match(core.program.said, /lease: this core handed the lead over to/);
     await two.restart(core);
 });
 
 test('two cores with one name, and a core without a database, are refused by name', options, async () => {
     const alone = runProgram('plantcastd', [two.plant.file, '--role', 'core', '--core', 'ws://127.0.0.1:1', '--port', '0']);
     assert.equal(alone.code, 1);
-    assert.match(alone.err, /two cores require `postgres`/);
+    assert.match(alone.err, /two cores \(--role core with --core\) require `postgres`/);
     const core = await two.leader(), other = two.other(core);
     await other.program.stop('SIGKILL');
     const started = await two.start(other.name, core.name);
@@ -344,7 +344,7 @@ test('during maintenance of the standby and without the database, the leader pol
     await other.program.stop();
     standby('maintenance');
     await alone(1);
-    await core.program.line(/lease: standby: maintenance: this core leads alone/);
+    await core.program.line(/lease: maintenance began: this core leads alone/);
     // Makes the database refuse every change of the lease, as one with a full disk would. The core must therefore not leave
     // maintenance (leading alone) although it is told to.
     server.ask(`CREATE FUNCTION refuse() RETURNS trigger LANGUAGE plpgsql AS $$ BEGIN RAISE 'refused'; END $$;

@@ -42,7 +42,7 @@ test('a leader that reaches neither standby nor database ends before the other c
         const { pause_ms } = await two.takeOver(t, core, () => Promise.all([core.toDatabase[how](), other.toOther[how]()]));
         t.diagnostic(`${how}: ${pause_ms.toFixed(0)} ms without a poller`);
         await core.program.ended;
-        assert.match(core.program.said, /lease: lost \(neither/);
+        assert.match(core.program.said, /lease: this core lost the lead \(neither/);
         await core.toDatabase.mend();
         await other.toOther.mend();
         await two.restart(core);

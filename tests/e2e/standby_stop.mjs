@@ -67,7 +67,7 @@ test('with changing leaders each change of an alarm is written once, and the sta
         await until('changes of the alarm', async () => (await changes(core)).length > had + ROWS);
         const watching = watch(renderer), { pause_ms } = await two.takeOver(t, core, kill(core, 'SIGTERM'));
         assert.equal((await core.program.ended).code, 0);
-        assert.match(core.program.said, new RegExp(`lease: handed over to ${two.other(core).name}\n`));
+        assert.match(core.program.said, new RegExp(`lease: this core handed the lead over to ${two.other(core).name}\n`));
         await until('the renderer is there', async () => (await renderer.tags())['TI-1'].quality_name === 'Good');
         promise(t, 'without a poller', pause_ms, GIVEN_MS);
         promise(t, 'without readings at a renderer', await watching.end(), BLIND_MS);

@@ -218,7 +218,8 @@ test('a display\'s secret reads only that display, even before its first message
     pictures.close();
 
     await reload(TILES, PICTURE);
-    assert.deepEqual(await tiles.until('the end', ({ closed }) => closed), { code: 1012, text: 'the panes of the display have changed' });
+    assert.deepEqual(await tiles.until('the end', ({ closed }) => closed), { code: 1012,
+        text: 'the plant file has changed what this display shows: connect again' });
     const again = await displayClient(2, second, false);
     await again.hello({ width: 640, height: 480 });
     const larger = await again.frameWhere('a picture', () => true);

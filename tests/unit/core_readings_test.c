@@ -200,6 +200,6 @@ TEST(differences_have_names)
     }
     json_object_del(message, "plant");
     char *why = core_identity_difference(message, "core", &own);
-    assert_string_equal(why, "the core does not send its plant");
+    assert_string_equal(why, "the core does not send its plant: do both nodes run the same version?");
     mem_free(why);
 }

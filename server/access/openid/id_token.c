@@ -78,7 +78,7 @@ static enum id_token_fault read_claims(const char *token, const json_t *jwks, js
     enum id_token_fault fault = ID_TOKEN_BAD;
     *why = "the ID token is not signed with a public-key algorithm";
     if (header && json_object_get(header, "crit"))
-        *why = "the ID token requires an extension (crit) that is not supported";
+        *why = "the ID token requires an extension (crit) that Plantcast does not support";
     else if (kty_of(alg)) {
         fault = verify(jws, jwks, alg, kid);
         *why = fault == ID_TOKEN_NO_KEY ? "the ID token is signed with a key that the provider does not publish"
@@ -87,7 +87,7 @@ static enum id_token_fault read_claims(const char *token, const json_t *jwks, js
     if (fault == ID_TOKEN_GOOD && (!cjose_jws_get_plaintext(jws, &text, &count, NULL) ||
                                    !(*claims = json_loadb((char *)text, count, JSON_REJECT_DUPLICATES, NULL)))) {
         fault = ID_TOKEN_BAD;
-        *why = "the claims of the ID token are not JSON";
+        *why = "the contents (claims) of the ID token are not JSON";
     }
     cjose_jws_release(jws);
     return fault;
@@ -115,11 +115,11 @@ static const char *fault_of(const json_t *claims, const struct id_token_expected
     const json_t *exp = json_object_get(claims, "exp"), *iat = json_object_get(claims, "iat"), *nbf = json_object_get(claims, "nbf");
     double now_s = (double)expected->now_s, oldest_s = now_s - OLDEST_S - (double)expected->patience_s;
     if (!iss || strcmp(iss, expected->config->issuer) != 0)
-        return "the ID token comes from another issuer (iss)";
+        return "the ID token comes from another issuer (iss) than the --openid file names";
     if (!is_for_us(claims, expected->config->client_id))
-        return "the ID token is meant for another audience (aud)";
+        return "the ID token is meant for another client (aud) than the --openid file names";
     if (!sub || !*sub || (expected->sub && strcmp(sub, expected->sub) != 0))
-        return "the subject (sub) of the ID token is missing or differs";
+        return "the user (sub) in the ID token is missing, or is not the user who signed in";
     if (!json_is_number(exp) || now_s >= json_number_value(exp) + ID_TOKEN_SKEW_S + (double)expected->patience_s)
         return "the ID token has expired; check the clocks of this machine and of the provider";
     if (!json_is_number(iat) || json_number_value(iat) > now_s + ID_TOKEN_SKEW_S || json_number_value(iat) < oldest_s ||

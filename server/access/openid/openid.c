@@ -185,7 +185,7 @@ static const char *take_claims(const struct openid_config *config, const json_t 
 
 const char *openid_vouch(struct openid *openid, const char *id_token, struct token_holder *out)
 {
-    const char *why = "the core does not have the identity provider's keys yet";
+    const char *why = "the core does not have the identity provider's keys yet; try again later";
     json_t *claims = NULL;
     *out = (struct token_holder){ .role = ROLE_NOBODY };
     pthread_mutex_lock(&openid->lock);
@@ -251,16 +251,21 @@ struct openid *openid_start(const struct openid_params *params)
     pthread_mutex_init(&openid->lock, NULL);
     pthread_mutex_init(&openid->asking, NULL);
     clock_cond_init(&openid->wake);
-    openid->good = counters_add(params->counters, "plantcast_openid_good", "gauge", "1 while the identity provider answers.");
+    openid->good = counters_add(params->counters, "plantcast_openid_good", "gauge",
+                                "1 while the OpenID Connect identity provider answers, so that users can sign in.");
     openid->people = counters_add(params->counters, "plantcast_openid_people", "gauge", "Users signed in by OpenID Connect.");
-    openid->refused = counters_add(params->counters, "plantcast_openid_refused_total", "counter", "OpenID Connect sign-ins refused.");
+    openid->refused =
+        counters_add(params->counters, "plantcast_openid_refused_total", "counter", "OpenID Connect sign-ins that the daemon refused.");
     openid->foreign = counters_add(params->counters, "plantcast_openid_foreign_total", "counter",
                                    "Answers of the identity provider that matched no pending sign-in.");
     openid->config = openid_config_read(params->log, params->path);
     if (openid->config && curl_global_init(CURL_GLOBAL_DEFAULT) == CURLE_OK)
         openid->started = pthread_create(&openid->thread, NULL, openid_run, openid) == 0;
     if (!openid->started) {
-        log_err(params->log, "openid: sign-in with the settings in %s cannot start", params->path);
+        log_err(
+            params->log,
+            "openid: users cannot sign in by OpenID Connect: the settings in %s cannot be used, or libcurl or a thread cannot be started",
+            params->path);
         openid_stop(&openid);
     }
     return openid;

@@ -81,7 +81,7 @@ static bool ask_keys(struct openid *openid)
         openid->jwks = json_incref(reply.json);
     }
     pthread_mutex_unlock(&openid->lock);
-    openid_say(openid, good ? NULL : reply.why[0] ? reply.why : "its keys are missing");
+    openid_say(openid, good ? NULL : reply.why[0] ? reply.why : "its signing keys are missing");
     openid_reply_finish(&reply);
     mem_free(url);
     return good;

@@ -38,7 +38,7 @@ static bool secret_in_form(struct openid *openid)
 static bool post(struct openid *openid, const char *endpoint, const struct text *form, struct openid_reply *reply)
 {
     char *url = openid_endpoint(openid, endpoint);
-    *reply = (struct openid_reply){ .why = "the provider's configuration lacks the address for this request" };
+    *reply = (struct openid_reply){ .why = "the identity provider's configuration lacks the address for this request" };
     bool answered = url && openid_post(openid->config, url, form->at, secret_in_form(openid), &openid->stopping, reply);
     mem_free(url);
     return answered;
@@ -83,7 +83,7 @@ static struct person *make_person(struct openid *openid, json_t *claims, const j
 
 static struct person *take_tokens(struct openid *openid, const struct openid_job *job, const json_t *tokens, char **why)
 {
-    const char *id_token = json_member_text(tokens, "id_token"), *fault = "the provider sent no ID token";
+    const char *id_token = json_member_text(tokens, "id_token"), *fault = "the identity provider sent no ID token";
     bool unsure;
     json_t *claims = id_token ? openid_verify(openid, id_token, job->sign_in.nonce, NULL, &unsure, &fault) : NULL;
     struct person *person = claims ? make_person(openid, claims, tokens, why) : NULL;
@@ -116,10 +116,10 @@ struct person *openid_redeem(struct openid *openid, const struct openid_job *job
     const char *error = json_member_text(reply.json, "error");
     *result = answered ? judge_code(&reply, error) : OPENID_AWAY;
     if (!answered)
-        *why = mem_printf("the provider does not answer: %s", reply.why);
+        *why = mem_printf("the identity provider does not answer: %s", reply.why);
     else if (reply.status != 200)
-        *why = mem_printf("the provider refuses %s: %.80s (status %d)", *result == OPENID_GUESSED ? "the code" : "the request",
-                          error ? error : "no reason given", reply.status);
+        *why = mem_printf("the identity provider refuses %s: %.80s (HTTP status %d)",
+                          *result == OPENID_GUESSED ? "the code" : "the request", error ? error : "no reason given", reply.status);
     else
         person = take_tokens(openid, job, reply.json, why);
     if (!person && reply.status == 200) { /* the log-in failed, so its refresh token, which the provider has already issued, is revoked */
@@ -138,11 +138,11 @@ static enum openid_rights take_claims(struct openid *openid, struct person *pers
 {
     bool told;
     if (!openid_complete(openid, claims, person->access_token, &told)) {
-        *why = "the provider no longer knows this user";
+        *why = "the identity provider no longer knows this user";
         return RIGHTS_GONE;
     }
     if (!told && !id_token_has_groups(openid->config, claims)) {
-        *why = "the provider did not send the user's groups";
+        *why = "the identity provider did not send the user's groups";
         return RIGHTS_UNKNOWN;
     }
     person->holder.role = id_token_role(openid->config, claims);
@@ -164,13 +164,13 @@ static enum openid_rights refresh(struct openid *openid, struct person *person, 
     openid_add_argument(&form, "refresh_token", person->refresh_token);
     bool answered = post(openid, "token_endpoint", &form, &reply);
     const char *error = json_member_text(reply.json, "error");
-    *why = "the provider does not answer";
+    *why = "the identity provider does not answer";
     if (answered && is_refusal(reply.status) && error && strcmp(error, "invalid_grant") != 0) {
         /* the provider rejects this server, not the user: the client secret may have expired */
-        *why = "the provider refused to renew the sign-in";
+        *why = "the identity provider refused to renew the sign-in";
     } else if (answered && is_refusal(reply.status)) {
         rights = RIGHTS_GONE;
-        *why = "the provider ended the user's sign-in";
+        *why = "the identity provider ended the user's sign-in";
     } else if (answered && reply.status == 200) {
         const char *id_token = json_member_text(reply.json, "id_token");
         bool unsure = false;
@@ -192,13 +192,13 @@ static enum openid_rights ask_again(struct openid *openid, struct person *person
     struct openid_reply reply = { .status = 0 };
     bool over = !person->access_token || (person->access_until_s && clock_utc_ns() / NS_PER_S >= person->access_until_s);
     enum openid_rights rights = RIGHTS_UNKNOWN;
-    *why = "the provider does not answer";
+    *why = "the identity provider does not answer";
     if (over || !url) {
         rights = RIGHTS_GONE;
-        *why = "the provider sent no refresh token, and the access token has expired";
+        *why = "the identity provider sent no refresh token, and the access token has expired";
     } else if (openid_get(openid->config, url, person->access_token, &openid->stopping, &reply) && is_refusal(reply.status)) {
         rights = RIGHTS_GONE;
-        *why = "the provider ended the user's sign-in";
+        *why = "the identity provider ended the user's sign-in";
     } else if (reply.status == 200 && json_is_object(reply.json)) {
         const char *sub = json_member_text(reply.json, "sub");
         rights = sub && !strcmp(sub, person->sub) ? take_claims(openid, person, reply.json, why) : RIGHTS_GONE;

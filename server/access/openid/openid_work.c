@@ -101,7 +101,7 @@ static void do_code(struct task *task)
         let_in(openid, task->job, person, task->began_ns);
     } else {
         if (!why)
-            why = mem_strdup("the provider does not answer");
+            why = mem_strdup("the identity provider does not answer");
         if (result == OPENID_AWAY)
             openid_say(openid, why);
         else
@@ -178,7 +178,7 @@ static void settle(struct openid *openid, struct task *task, enum openid_rights 
 static enum openid_rights ask_rights(struct openid *openid, struct person *copy, bool left_alone, const char **why)
 {
     if (left_alone) {
-        *why = "no activity at the page";
+        *why = "the user was inactive for the time of --lock-after";
         return RIGHTS_GONE;
     }
     return openid_knows(openid) || clock_utc_ns() >= copy->holder.until_utc_ns ? openid_check(openid, copy, why) : RIGHTS_UNKNOWN;

@@ -61,7 +61,8 @@ void process_counters_set(struct counters *counters)
                                      "Processor time of all threads of this process in seconds."),
                 clock_work_ns() / 1000);
     if (read_stat(fields)) {
-        counter_set(counters_add(counters, "process_threads", "gauge", "Threads of this process."), (int64_t)fields[STAT_THREADS]);
+        counter_set(counters_add(counters, "process_threads", "gauge", "Number of threads of this process."),
+                    (int64_t)fields[STAT_THREADS]);
         counter *start_s =
             counters_add(counters, "process_start_time_seconds", "gauge", "Start time of the process, in seconds since 1970.");
         if (atomic_load(start_s) == 0) /* sets the start time only once, so that later changes of the clock do not move it */
@@ -72,7 +73,8 @@ void process_counters_set(struct counters *counters)
                                  "Resident memory of this process in bytes, including mapped files."),
                     (int64_t)fields[STAT_RESIDENT] * sysconf(_SC_PAGESIZE));
     }
-    counter_set(counters_add(counters, "process_open_fds", "gauge", "Files and sockets that this process has open."), count_files());
+    counter_set(counters_add(counters, "process_open_fds", "gauge", "Number of files and sockets that this process has open."),
+                count_files());
     if (getrlimit(RLIMIT_NOFILE, &files) == 0)
         counter_set(counters_add(counters, "process_max_fds", "gauge",
                                  "Maximum number of files and sockets that this process may have open."),

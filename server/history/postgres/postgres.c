@@ -95,8 +95,8 @@ static void give_up(struct postgres *postgres, const char *why)
     snprintf(cause, sizeof(cause), "%.*s", (int)strcspn(why, "\n"), why);
     if (strcmp(cause, postgres->said) != 0 && !ends(postgres))
         log_event(log_of(postgres), LOG_ERROR, EVENT_HISTORY_UNWRITABLE,
-                  "history: cannot write to PostgreSQL (%s); points are queued in %s, at most %.0f", cause, postgres->folder,
-                  postgres->params.plant->history.postgres.spool_points);
+                  "history: PostgreSQL does not accept recorded points (%s); the points are queued in %s, at most %.0f", cause,
+                  postgres->folder, postgres->params.plant->history.postgres.spool_points);
     memcpy(postgres->said, cause, sizeof(cause));
     postgres_tables_finish(&postgres->tables);
     postgres_link_close(&postgres->link);
@@ -129,7 +129,8 @@ static void is_well(struct postgres *postgres)
     postgres->backoff = (struct backoff){ 0 };
     counter_set(postgres->counters.up, 1);
     if (*postgres->said)
-        log_event(log_of(postgres), LOG_INFO, EVENT_HISTORY_WRITTEN, "history: PostgreSQL accepts points again");
+        log_event(log_of(postgres), LOG_INFO, EVENT_HISTORY_WRITTEN,
+                  "history: PostgreSQL accepts recorded points again; the queued points are sent");
     *postgres->said = 0;
 }
 
@@ -412,7 +413,8 @@ static void *postgres_main(void *arg)
 
 static void add_counters(struct postgres *postgres, struct counters *counters)
 {
-    postgres->counters.up = counters_add(counters, "plantcast_postgres_up", "gauge", "1 while PostgreSQL accepts recorded points.");
+    postgres->counters.up =
+        counters_add(counters, "plantcast_postgres_up", "gauge", "1 while the site's PostgreSQL database accepts recorded points.");
     postgres->counters.points =
         counters_add(counters, "plantcast_postgres_points_total", "counter", "Recorded points that PostgreSQL has received.");
     postgres->counters.waiting =

@@ -54,7 +54,7 @@ static bool wait_for(struct postgres_link *link, short events, int64_t until_ns)
         struct pollfd fds[] = { { .fd = PQsocket(link->library), .events = events },
                                 { .fd = link->stop_by_ns ? -1 : link->stop_fd, .events = POLLIN } };
         if (now_ns >= end_ns)
-            return fail(link, "the server did not answer within the time limit");
+            return fail(link, "the PostgreSQL server did not answer within the time limit");
         int count = poll(fds, 2, (int)((end_ns - now_ns) / NS_PER_MS) + 1);
         if (count > 0 && fds[1].revents)
             link->stop_by_ns = now_ns + STOP_NS;

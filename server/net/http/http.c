@@ -45,12 +45,13 @@ static int ready(struct server_context *server, struct http_exchange *request)
 {
     hear_balancer(server, request);
     if (server->params.keeper && !core_end_leads(server))
-        return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "this core is standby and does not lead\n");
+        return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "not ready: this core is the standby and does not lead\n");
     if (is_asked_as_renderer(request) && !server->params.is_core && !server->params.plant.core_link)
         return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE,
                                    "not a renderer: this daemon was started without --role render and polls the devices itself\n");
     if (is_asked_as_renderer(request) && server->life.drain_ns)
-        return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "this node is being drained\n");
+        return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE,
+                                   "not ready: this daemon moves its sessions to other daemons (drain)\n");
     if (render_service_ready(server->params.plant.render_service))
         return request_answer_text(request, HTTP_STATUS_OK,
                                    !server->params.keeper            ? "ok\n"

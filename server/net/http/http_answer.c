@@ -234,12 +234,12 @@ bool request_args(struct lws *wsi, struct args *args, struct message_error *erro
         if (empty)
             continue;
         if (args->count == MAX_ARGS) {
-            message_fail(error, "bad_field", "the query has more than %d arguments", MAX_ARGS);
+            message_fail(error, "bad_field", "the URL's query has more than %d arguments", MAX_ARGS);
             return false;
         }
         char *arg = args->bytes[args->count];
         if (lws_hdr_copy_fragment(wsi, arg, MAX_ARG_BYTES, WSI_TOKEN_HTTP_URI_ARGS, i) < 0) {
-            message_fail(error, "bad_field", "argument %d is longer than %d bytes", i + 1, MAX_ARG_BYTES - 1);
+            message_fail(error, "bad_field", "argument %d of the URL's query is longer than %d bytes", i + 1, MAX_ARG_BYTES - 1);
             return false;
         }
         args->list[args->count++] = arg;

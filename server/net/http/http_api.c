@@ -160,9 +160,11 @@ static void count_memory(struct server_context *server)
     struct counters *counters = server->params.counters;
     struct memory_use use;
     memory_measure(&use);
-    counter_set(counters_add(counters, "plantcast_anonymous_bytes", "gauge", "Resident anonymous memory (not backed by a file)."),
+    counter_set(counters_add(counters, "plantcast_anonymous_bytes", "gauge",
+                             "Resident memory of the daemon in bytes that is not backed by a file (anonymous)."),
                 (int64_t)use.anonymous);
-    counter_set(counters_add(counters, "plantcast_heap_bytes", "gauge", "Memory allocated by malloc."), (int64_t)use.allocated);
+    counter_set(counters_add(counters, "plantcast_heap_bytes", "gauge", "Memory in bytes that the daemon has allocated with malloc."),
+                (int64_t)use.allocated);
 }
 
 int metrics(struct server_context *server, struct http_exchange *request)

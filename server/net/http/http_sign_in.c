@@ -57,7 +57,7 @@ int ask_login(struct server_context *server, struct http_exchange *request)
 static int refuse_unasked(struct server_context *server, struct http_exchange *request, enum openid_finish why)
 {
     server->logins.unasked++;
-    return why == OPENID_FULL ? request_answer_later(request, "too many sign-ins at once; sign in again from the page\n")
+    return why == OPENID_FULL ? request_answer_later(request, "too many users are signing in at once; sign in again from the page\n")
                               : request_answer_text(request, HTTP_STATUS_FORBIDDEN,
                                                     "this browser has no sign-in in progress; sign in again from the page\n");
 }

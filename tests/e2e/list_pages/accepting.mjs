@@ -126,7 +126,7 @@ test('on the command line, accepting gives the same locations, and offers a dry 
     const accept = (...args) => runProgram('plantcast', ['sensors', 'accept', plant.file, ...args]);
     const trial = accept('--within', '0.1', '--confidence', '0.9', '--dry-run');
     assert.equal(trial.code, 0, trial.err);
-    assert.match(trial.out, new RegExp(`^${sure} accepted\n20 without a position`, 'm'));
+    assert.match(trial.out, new RegExp(`^${sure} accepted\n20 sensors without a position`, 'm'));
     assert.equal(trial.out.match(/^TA-/gm).length, sure);
     assert.equal(readFileSync(tagsFile, 'utf8'), original);
     const done = accept('--within', '0.1', '--confidence', '0.9');

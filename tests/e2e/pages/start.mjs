@@ -19,15 +19,15 @@ test('a plant changed since its preparation is prepared when the daemon starts',
         writeFileSync(tiny.file, text.replace('groups:', '  - { id: NEW, model: box.gltf, placement: { translate: [9, 0, 0] } }\ngroups:'));
         await tiny.startSim();
         await tiny.startDaemon();
-        assert.match(tiny.daemon.said, /preparing the plant: prepared files are missing or outdated/);
+        assert.match(tiny.daemon.said, /prepared files are missing or outdated: running plantcast-prep/);
         const { assets } = await (await fetch(`http://127.0.0.1:${tiny.port}/api/v1/plant`)).json();
         assert.ok(assets.some(({ id }) => id === 'NEW'));
-        // The model is no valid glTF, so the plant cannot be prepared: the daemon must print one line and not start.
+        // The model is no valid glTF, so plantcast-prep could not prepare the plant: the daemon must print one line and not start.
         await tiny.daemon.stop();
         writeFileSync(join(tiny.folder, 'box.gltf'), '{');
         const { code, err } = runProgram('plantcastd', [tiny.file, '--port', '0']);
         assert.equal(code, 1);
-        assert.match(err, /the plant cannot be prepared: /);
+        assert.match(err, /plantcast-prep could not prepare the plant: /);
     } finally {
         await tiny.destroy();
     }

@@ -26,7 +26,7 @@ export function missingTwoCores() {
 }
 
 // Returns how many times this core has begun to lead, i.e. to poll devices, according to its log.
-export const terms = (core) => core.program.said.match(/polls devices and owns the alarms/g)?.length ?? 0;
+export const terms = (core) => core.program.said.match(/now polls devices and evaluates alarms/g)?.length ?? 0;
 export const kill = (core, signal) => () => core.program.child.kill(signal);
 
 export class TwoCores {
