@@ -11,7 +11,7 @@ import { notBuilt, runProgram } from './support/tiny_plant.mjs';
 import { kill, missingTwoCores, TwoCores, until } from './support/two_cores.mjs';
 
 const skip = missingTwoCores(), options = { skip, timeout: 240000 };
-const TAKEN = /tag list: \S+ saved by the core; previous list kept as/, PADDING = `${' '.repeat(99)}\n`.repeat(20000);
+const TAKEN = /tag list \S+ was saved by the core; the previous list is kept as/, PADDING = `${' '.repeat(99)}\n`.repeat(20000);
 let two, seq = 0;
 
 // Copies a plant into a folder of its own, as on a machine of its own. Returns the path of the copy's plant file.
