@@ -129,8 +129,8 @@ static bool find_params(struct influence_making *making, int group, const double
     good = good && gaussian_fit(gp, &(struct gaussian_data){ making->log, making->workers, &mesh, &table }, least_m, FIT_MAX * size, why);
     if (good)
         log_info(making->log,
-                 "asset %s, group %s: Gaussian process (gp) fitted to %zu readings of each of %zu sensors: range %.3g m, noise %.3g, "
-                 "deviation %.3g %s",
+                 "asset %s, group %s: gp (Gaussian process): estimated from %zu readings of each of %zu sensors: range_m %.3g, "
+                 "noise %.3g, deviation %.3g %s",
                  asset, of->id, table.instants, count, gp->range_m, gp->noise, gp->deviation, of->unit);
     else
         log_err(making->log, "asset %s, group %s: gp: %s", asset, of->id, why);

@@ -214,8 +214,8 @@ static void refuse(struct core_link *link, const char *why)
 
 /* Restricts the connection to one purpose: this standby promises the leader, when asked, not to take the lead. The leader needs
    these promises to renew its lease. The readings that the leader sends cannot be used, because its configuration differs from
-   this daemon's. */
-static void stay_to_vote(struct core_link *link, const char *why)
+   this daemon's. takes_over: true: this daemon takes the lead all the same if the leader fails. */
+static void stay_to_vote(struct core_link *link, const char *why, bool takes_over)
 {
     char *said = link->hosts[link->turn.index].said[link->address], text[WHY_BYTES];
     snprintf(text, sizeof(text), "%s", why);
@@ -223,8 +223,8 @@ static void stay_to_vote(struct core_link *link, const char *why)
     counter_inc(link->refused, 1);
     if (strcmp(text, said) != 0)
         log_err(link->params.log,
-                "core: %s: no readings: %s; the other core leads; this core cannot take over and only confirms the leader's lease",
-                link->params.urls[link->turn.index], text);
+                "core: %s: no readings: %s; the other core leads; this core %s take over and only confirms the leader's lease",
+                link->params.urls[link->turn.index], text, takes_over ? "can" : "cannot");
     memcpy(said, text, sizeof(text));
 }
 
@@ -243,10 +243,11 @@ static void on_refused(struct core_link *link, const json_t *message)
     if (json_object_get(message, "configuration"))
         note_leader(link, json_is_true(json_object_get(message, "votes")));
     arrive(link, 0, mem_strdup(link->in.at));
-    if (link->params.keeper && !json_is_true(json_object_get(message, "takes_over")))
+    bool takes_over = json_is_true(json_object_get(message, "takes_over"));
+    if (link->params.keeper && !takes_over)
         lease_keeper_set_refused(link->params.keeper, why ? why : "no reason given");
     if (link->params.keeper && json_is_true(json_object_get(message, "votes")))
-        stay_to_vote(link, why ? why : "the core refuses this node without a reason");
+        stay_to_vote(link, why ? why : "the core refuses this node without a reason", takes_over);
     else
         refuse(link, why ? why : "the core refuses this node without a reason");
 }

@@ -690,7 +690,7 @@ static const char *verify_person(const struct server_context *server, const stru
     *out = (struct token_holder){ .role = ROLE_NOBODY };
     if (token && server->logins.tokens)
         return !tokens_find(server->logins.tokens, token, clock_utc_ns(), out) ? "the core does not accept this token (its --tokens file)"
-               : role_is_node(out->role)                                       ? "a daemon's token does not permit user actions"
+               : role_is_node(out->role)                                       ? "this is a daemon's token, which permits no user actions"
                                                                                : NULL;
     if (id_token && server->logins.openid) {
         const char *why = openid_vouch(server->logins.openid, id_token, out);

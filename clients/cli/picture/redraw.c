@@ -87,7 +87,7 @@ static bool same_as_recorded(struct offline_renderer *offline, const struct redr
     snapshot_destroy(&then);
     printf("  %s%zu of %zu readings in the picture agree with the recorded history\n", same == count ? "" : "DIFFERS: ", same, count);
     if (first)
-        printf("  first reading that differs from the recorded history: tag %s\n", offline->plant->tags[first - 1].name);
+        printf("  first reading in the picture that differs from the recorded history: tag %s\n", offline->plant->tags[first - 1].name);
     return same == count;
 }
 

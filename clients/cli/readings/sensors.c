@@ -30,7 +30,7 @@ static void print_usage(FILE *out)
           "A hot spot is missed if it raises no sensor's reading by at least 5 % of the group's range.\n"
           "The size of a hot spot is hot_spot_m of the sensor group (INTERPOLATIONS.md, show: blind).\n"
           "\n"
-          "  --add N            number of sensors to propose\n"
+          "  --add N            number of additional sensors for which to propose positions\n"
           "  --group ID         sensor group of the new sensors (default: first group of the plant file)\n"
           "  --asset ID         propose positions only on this asset (default: all assets with sensors of the group)\n"
           "  --prepared FOLDER  output folder of plantcast-prep (default: PLANT.prepared next to PLANT.yaml;\n"

@@ -34,13 +34,15 @@ int api_other_plants(struct server_context *server, struct http_exchange *reques
         return request_answer_error(request, &error);
     for (size_t i = 0; i < args.count; i++) {
         if (strncmp(args.list[i], "id=", 3) != 0 || count == OTHER_PLANTS)
-            return request_answer_text(request, HTTP_STATUS_BAD_REQUEST, "expected id=ID, once for each plant\n");
+            return request_answer_text(request, HTTP_STATUS_BAD_REQUEST,
+                                       "the address needs id=ID with the ID of a plant, once for each plant\n");
         which[count] = find(server, request, args.list[i] + 3);
         if (which[count++] < 0)
             return refuse_unknown(request);
     }
     if (count == 0)
-        return request_answer_text(request, HTTP_STATUS_BAD_REQUEST, "expected id=ID, once for each plant\n");
+        return request_answer_text(request, HTTP_STATUS_BAD_REQUEST,
+                                   "the address needs id=ID with the ID of a plant, once for each plant\n");
     return request_answer_json(request, other_plants_text(server->params.plant.other_plants, which, count, clock_mono_ns()));
 }
 
@@ -53,7 +55,7 @@ int ask_other_picture(struct server_context *server, struct http_exchange *reque
         return request_answer_error(request, &error);
     const char *id = arg_of(&args, "id"), *number = arg_of(&args, "picture");
     if (!id || !number)
-        return request_answer_text(request, HTTP_STATUS_BAD_REQUEST, "expected id=ID and picture=N\n");
+        return request_answer_text(request, HTTP_STATUS_BAD_REQUEST, "the address needs id=ID with the ID of a plant, and picture=N\n");
     int which = find(server, request, id);
     if (which < 0)
         return refuse_unknown(request);

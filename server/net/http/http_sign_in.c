@@ -66,7 +66,7 @@ static int refuse_held(struct server_context *server, struct http_exchange *requ
 {
     server->logins.held++;
     counter_inc(server->counters.logins_held, 1);
-    return request_answer_text(request, 429, "too many wrong answers from this address; try again later\n");
+    return request_answer_text(request, 429, "too many failed log-ins from this client address; try again later\n");
 }
 
 int ask_login_callback(struct server_context *server, struct http_exchange *request)
