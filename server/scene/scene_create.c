@@ -117,11 +117,12 @@ static bool influence_fits(struct log *log, const struct plant *plant, const str
     return true;
 }
 
-/* Hashes the model of an asset, without reading again a model that an earlier asset uses. Returns false with errno if it cannot be read. */
+/* Hashes the model of an asset, without reading again a model that was hashed for an earlier asset (0: it was not, because that asset
+   is missing). Returns false with errno if the model cannot be read. */
 static bool model_hash(const struct plant *plant, uint64_t *hashes, int index)
 {
     for (int i = 0; i < index; i++)
-        if (!strcmp(plant->assets[i].model, plant->assets[index].model)) {
+        if (hashes[i] && !strcmp(plant->assets[i].model, plant->assets[index].model)) {
             hashes[index] = hashes[i];
             return true;
         }

@@ -271,8 +271,8 @@ CASE(what_was_not_prepared_is_refused)
     assert_refused(f, "m.glb, or the asset's 'nodes'");
 }
 
-/* If the manifest states why one asset is missing, the other assets are still loaded. */
-CASE(a_missing_asset_does_not_keep_the_others_away)
+/* Writes a manifest in which one asset is missing. All assets of the plant have the same model. */
+static void write_missing(const struct scene_fixture *f, size_t missing)
 {
     uint64_t model;
     struct text *text = test_text();
@@ -280,9 +280,15 @@ CASE(a_missing_asset_does_not_keep_the_others_away)
     text_add(text, "{\"format\": 2, \"assets\": [");
     for (size_t i = 0; i < f->plant->asset_count; i++)
         text_add(text, "{\"id\": \"%s\", \"file\": \"%s\", \"recipe\": \"%016" PRIx64 "\"%s}%s", f->plant->assets[i].id,
-                 i == 1 ? "0.asset" : "1.asset", i == 1 ? 0 : plant_recipe(&f->plant->assets[i], model),
-                 i == 1 ? ", \"missing\": \"no node's name matches 'B'\"" : "", i + 1 < f->plant->asset_count ? "," : "]}");
+                 i == missing ? "0.asset" : "1.asset", i == missing ? 0 : plant_recipe(&f->plant->assets[i], model),
+                 i == missing ? ", \"missing\": \"no node's name matches 'B'\"" : "", i + 1 < f->plant->asset_count ? "," : "]}");
     write_manifest(f, text->at);
+}
+
+/* If the manifest states why one asset is missing, the other assets are still loaded. */
+CASE(a_missing_asset_does_not_keep_the_others_away)
+{
+    write_missing(f, 1);
     struct scene *scene = scene_create(f->log, f->plant, f->prepared);
     assert_non_null(scene);
     assert_null(scene->assets[0].missing);
@@ -300,6 +306,12 @@ CASE(a_missing_asset_does_not_keep_the_others_away)
                       "{\"id\": \"B\", \"file\": \"0\", \"recipe\": \"0\", \"missing\": \"b\"},"
                       "{\"id\": \"C\", \"file\": \"0\", \"recipe\": \"0\", \"missing\": \"c\"}]}");
     assert_refused(f, "plantcast-prep could not prepare any asset");
+    write_missing(f, 0); /* the first asset with a model is missing, so that its model is hashed for a later one */
+    scene = scene_create(f->log, f->plant, f->prepared);
+    assert_non_null(scene);
+    assert_non_null(scene->assets[0].missing);
+    assert_null(scene->assets[1].missing);
+    scene_destroy(&scene);
     write_good_manifest(f);
 }
 
