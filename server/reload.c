@@ -32,7 +32,7 @@ static const int64_t SETTLE_NS = NS_PER_S;
    checks whether the core has. */
 static const int64_t FOLLOW_NS = 120 * NS_PER_S, LOOK_NS = 20 * NS_PER_MS;
 /* interval in nanoseconds at which a node tries again to get its core's tag list */
-static const int64_t MATCH_AGAIN_NS = 5 * NS_PER_S;
+static const int64_t MATCH_AGAIN_NS = 5 * NS_PER_S, MATCH_RARELY_NS = 300 * NS_PER_S;
 /* time limit in milliseconds: a reload waits this long for another program to finish changing the plant's folder */
 enum { WAIT_MS = 3000 };
 
@@ -75,6 +75,7 @@ struct reload {
         struct core_files files;
         char configuration[17]; /* the core's configuration; empty: there is no order */
         int64_t due_ns;         /* monotonic time at which to carry out the order */
+        int64_t pause_ns;       /* time between the last two attempts; 0: there was at most one attempt */
     } match;                    /* order to make this node's files equal to its core's */
     char agreed[17];            /* hash of the tag list that both cores have, to be recorded; empty: none */
 };
@@ -464,32 +465,44 @@ static char *get_tags(struct reload *reload, const char *hash, char **why)
     return text;
 }
 
+/* Returns the folder with the record of the tag lists that this node has had in common with its core (mem_free). */
+static char *record_folder(const struct reload *reload)
+{
+    const struct plant_runtime *runtime = *reload->runtime;
+    return runtime->services.history_folder ? mem_strdup(runtime->services.history_folder)
+                                            : plant_runtime_prepared_folder(reload->context->params, runtime->plant);
+}
+
 /* Gets the core's tag list and activates it. Returns NULL on success, otherwise the reason (mem_free). *again: true: the next
    attempt may succeed without a person's help. */
 static char *take_tags(struct reload *reload, const struct core_files *files, bool *again)
 {
-    const struct plant_runtime *runtime = *reload->runtime;
-    const struct plant *plant = runtime->plant;
-    bool is_standby = reload->context->params->role == SERVER_CORE;
+    const struct plant *plant = (*reload->runtime)->plant;
     const char *node = reload->context->params->node;
-    char *why = NULL, hash[17] = "", *real = realpath(plant->files.tags_path, NULL);
+    char *why = NULL, hash[17] = "", *real = realpath(plant->files.tags_path, NULL), *folder = record_folder(reload);
     struct refusal unread;
     struct tag_save save = { .path = real ? real : plant->files.tags_path, .who = reload->by };
     save.before = tag_file_read(save.path, &unread);
     if (save.before)
         tag_file_hash(save.before, hash);
-    if (is_standby && !(runtime->services.history_folder && core_tags_agreed(runtime->services.history_folder, hash))) {
-        why =
-            mem_printf("%s on node %s was edited there, or the two cores never had the same list, so it is not replaced: make it equal to "
-                       "the leading core's list, and reload the plant on %s",
-                       save.path, node, node);
+    *again = true;
+    if (!save.before) {
+        char text[REFUSAL_TEXT_BYTES];
+        refusal_text(&unread, text);
+        why = mem_printf("%s on node %s: %s", save.path, node, text);
+    } else if (!core_tags_agreed(folder, hash)) {
+        *again = false;
+        why = mem_printf("%s on node %s was edited there, or never was equal to the core's list, so it is not replaced: make it equal to "
+                         "the leading core's list, and reload the plant on %s",
+                         save.path, node, node);
     } else if ((save.after = get_tags(reload, files->tags, &why))) {
-        *again = true;
-        if (!save_now(reload, &save))
+        int error = core_tags_expect(folder, files->tags);
+        if (error)
+            why = mem_printf("cannot write to the folder %s on node %s: %s", folder, node, strerror(-error));
+        else if (!save_now(reload, &save))
             why = mem_printf("%s: %s", save.path, reload->failure);
-    } else {
-        *again = true;
     }
+    mem_free(folder);
     mem_free(save.before);
     mem_free(save.after);
     free(real);
@@ -542,17 +555,18 @@ static bool match_now(struct reload *reload, const struct core_match *match)
     return !again || !why;
 }
 
-/* Records that both cores have this tag list. */
+/* Records that this node and its core have this tag list. */
 static void agree_now(struct reload *reload, const char *hash)
 {
     report_unmatched(reload, NULL);
-    const char *folder = (*reload->runtime)->services.history_folder;
-    int error = folder ? core_tags_agree(folder, hash) : 0;
+    char *folder = record_folder(reload);
+    int error = core_tags_agree(folder, hash);
     if (error)
-        log_err(reload->context->log,
-                "core: %s: cannot record that both cores have the same tag list (%s): this core will not get the "
-                "next one from the leader",
-                folder, strerror(-error));
+        log_warn(reload->context->log,
+                 "core: %s: cannot record that this node and its core have the same tag list (%s): this node will not get the next one "
+                 "from the core",
+                 folder, strerror(-error));
+    mem_free(folder);
 }
 
 /* --- importing a plant -------------------------------------------------------------------------------------------------- */
@@ -734,9 +748,11 @@ static void carry_out(struct reload *reload, struct core_match *match)
 {
     snprintf(reload->by, sizeof(reload->by), "the core");
     bool done = match_now(reload, match);
-    match->due_ns = clock_mono_ns() + MATCH_AGAIN_NS;
+    int64_t doubled_ns = match->pause_ns ? 2 * match->pause_ns : MATCH_AGAIN_NS;
+    match->pause_ns = doubled_ns < MATCH_RARELY_NS ? doubled_ns : MATCH_RARELY_NS;
+    match->due_ns = clock_mono_ns() + match->pause_ns;
     pthread_mutex_lock(&reload->thread.lock);
-    if (!done && !reload->match.configuration[0])
+    if (!done && !reload->match.configuration[0] && !reload->agreed[0]) /* agreed: the core has accepted this node meanwhile */
         reload->match = *match;
     pthread_mutex_unlock(&reload->thread.lock);
 }
@@ -857,6 +873,7 @@ void reload_agree(struct reload *reload, const char *tags_hash)
 {
     pthread_mutex_lock(&reload->thread.lock);
     snprintf(reload->agreed, sizeof(reload->agreed), "%s", tags_hash);
+    reload->match.configuration[0] = 0; /* the core has accepted this node's files: an earlier order no longer holds */
     pthread_cond_signal(&reload->thread.wake);
     pthread_mutex_unlock(&reload->thread.lock);
 }

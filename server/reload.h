@@ -23,11 +23,12 @@ void reload_ask(struct reload *reload, const char *who);
 void reload_follow(struct reload *reload, uint64_t session, const char *configuration);
 /* On a renderer or a standby core that its core refused because of its configuration: makes this node's files equal to the
    core's. Loads the files again if they are equal on disk already; otherwise gets the core's tag list, and saves it like
-   reload_save(). Tries again every few seconds until this succeeds; a standby tells its leader the reason. Does not replace a
-   plant file or models, nor a standby's tag list that was edited on this machine. files, configuration: the core's hashes. Does
-   not wait. Call from any thread. */
+   reload_save(). Tries again, after 5 s at first and 5 min at last, until this succeeds or the core accepts this node; a standby
+   tells its leader the reason. Does not replace a plant file or models, nor a tag list that was edited on this machine. files,
+   configuration: the core's hashes. Does not wait. Call from any thread. */
 void reload_match(struct reload *reload, const struct core_files *files, const char *configuration);
-/* Records that both cores of a pair have the tag list with this hash. Does not wait. Call from any thread. */
+/* Records that this node and its core have the tag list with this hash, and cancels the order of reload_match(). Does not wait. Call
+   from any thread. */
 void reload_agree(struct reload *reload, const char *tags_hash);
 /* Makes this core take the lead from the core that it followed, even while a reload is reading or preparing; does not wait. Call
    from any thread. */

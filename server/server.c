@@ -221,7 +221,7 @@ static bool start_net(struct server *server)
         .reload = ask_reload,
         .follow = server->params.role == SERVER_RENDER || server->keeper ? follow_reload : NULL,
         .match = server->params.role == SERVER_RENDER || server->keeper ? match_core : NULL,
-        .agree = server->keeper ? agree_on_tags : NULL,
+        .agree = server->params.role == SERVER_RENDER || server->keeper ? agree_on_tags : NULL,
         .save = server->params.role == SERVER_RENDER ? NULL : ask_save,
         .import = server->import,
         .import_ordered = on_import_ordered,

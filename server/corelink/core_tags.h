@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Transfers the tag list from the leading core to a standby or renderer over HTTP, and records that two cores have the same
-   list. Each function blocks; call them in one thread at a time. */
+/* Transfers the tag list from the leading core to a standby or renderer over HTTP, and records which lists
+   both have had in common. Each function blocks; call them in one thread at a time. */
 #ifndef CORELINK_CORE_TAGS_H
 #define CORELINK_CORE_TAGS_H
 #include "base/system/http_request.h"
@@ -15,10 +15,13 @@ bool core_tags_begin(struct http_request *request, struct core_link *link, const
    with the reason in *why (mem_free). */
 char *core_tags_get(struct http_request *request, const char *hash, char **why);
 
-/* Records in the history folder the hash of the tag list that leader and standby have in common, so that a list that somebody
-   edits on one of the two machines later is not overwritten. Returns 0 or -errno. */
+/* Records in a folder the hash of the tag list that this node and its core have in common. A list without a record was edited on
+   this machine, and must not be overwritten. Returns 0 or -errno. */
 int core_tags_agree(const char *folder, const char *hash);
-/* Returns true if that record has this hash. */
+/* Adds to the record the hash of a list that this node is about to save, and keeps the newest eight: the core may accept the node
+   only with a later list. Returns 0 or -errno. */
+int core_tags_expect(const char *folder, const char *hash);
+/* Returns true if the record in the folder has this hash. */
 bool core_tags_agreed(const char *folder, const char *hash);
 
 #endif

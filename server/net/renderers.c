@@ -137,6 +137,13 @@ static const struct renderer_peer *find_witness(const struct server_context *ser
     return witness;
 }
 
+/* Returns whether this core of a pair takes the lead if the leader fails. A core that is refused only because its version differs
+   does, because the two cores of a pair are upgraded one after the other. */
+static bool takes_over(const struct renderer_peer *renderer)
+{
+    return is_standby(renderer) || (renderer->state == RENDERER_VOTES && !renderer->other_configuration);
+}
+
 /* Describes the standby for engineers' pages (`standby` in the message `status`). NULL: this core leads no pair. */
 static json_t *describe_standby(const struct server_context *server)
 {
@@ -154,6 +161,7 @@ static json_t *describe_standby(const struct server_context *server)
     const char *why = standby->behind ? standby->behind : standby->refusal && !standby->other_configuration ? standby->refusal : NULL;
     if (why)
         json_object_set_new(text, "why", json_string(why));
+    json_object_set_new(text, "takes_over", json_boolean(takes_over(standby)));
     return text;
 }
 
@@ -366,10 +374,8 @@ static bool send_refusal(const struct server_context *server, struct renderer_pe
     bool votes = renderer->state == RENDERER_VOTES;
     renderer->refusal_sent = true;
     renderer->close_text = votes ? NULL : "the core refused this node: the message before says why";
-    /* The member takes_over says whether the refused core may still take the lead. A core that is refused only because its
-       version differs may, because the two cores of a pair are upgraded one after the other. */
-    json_t *message = json_pack("{s:s,s:s,s:b,s:b}", "type", "refused", "why", renderer->refusal, "votes", votes, "takes_over",
-                                votes && !renderer->other_configuration);
+    json_t *message =
+        json_pack("{s:s,s:s,s:b,s:b}", "type", "refused", "why", renderer->refusal, "votes", votes, "takes_over", takes_over(renderer));
     if (renderer->other_configuration) {
         const struct core_identity own = own_identity(server);
         json_object_set_new(message, "configuration", json_string(own.configuration));
@@ -603,8 +609,9 @@ static void say_refusal(struct server_context *server, const struct renderer_pee
     char said[sizeof(server->core.refused)];
     bool votes = renderer->state == RENDERER_VOTES;
     snprintf(said, sizeof(said), "%s %s: refused: %s%s", renderer->stands_by ? "standby" : "renderer", renderer->name, renderer->refusal,
-             votes                 ? "; this core cannot take over, but still confirms the leader's lease"
-             : renderer->stands_by ? "; this core cannot take over"
+             takes_over(renderer)  ? "; the standby can take over, and confirms the leader's lease"
+             : votes               ? "; the standby cannot take over, but still confirms the leader's lease"
+             : renderer->stands_by ? "; the standby cannot take over"
                                    : "");
     if (strcmp(said, server->core.refused) != 0)
         log_err(server->params.log, "%s", said);
@@ -736,7 +743,7 @@ static void on_promise(const struct server_context *server, struct renderer_peer
 /* Handles a standby's message that it cannot get this core's files. */
 static void take_files(struct server_context *server, struct renderer_peer *renderer, const char *why)
 {
-    if (!why || (renderer->behind && !strcmp(renderer->behind, why)))
+    if (!why || !renderer->differing || (renderer->behind && !strcmp(renderer->behind, why)))
         return;
     mem_free(renderer->behind);
     renderer->behind = mem_strdup(why);

@@ -63,7 +63,7 @@ async function learns(core, good) {
     for (let standby = null; ;) {
         if (standby && good(standby))
             return engineer.close() ?? standby;
-        ({ standby } = await engineer.text('status', 60000));
+        ({ standby } = await engineer.text('status', 200000));
     }
 }
 const isSame = ({ connected, files: differing, why }) => connected && differing.length === 0 && !why;
@@ -87,6 +87,16 @@ test('a saved tag list reaches the standby, which takes over with it', options, 
     assert.deepEqual(await positionOf(other.node), [0.5, 0, 0.25]);
     await two.restart(core);
     await two.followed(other);
+});
+
+test('lists saved in quick succession reach the standby, also one equal to an earlier list', options, async () => {
+    const core = await two.leader(), other = two.other(core);
+    await learns(core, isSame);
+    for (const z of [0.35, 0.4, 0.35, 0.25])
+        await save(core.node, z);
+    await until('the last list at the standby', () => list(other) === list(core));
+    await two.followed(core);
+    await learns(core, isSame);
 });
 
 test('a list saved while the standby is disconnected reaches it later, also after a cut in the middle of the transfer', options,
@@ -183,6 +193,11 @@ test('a saved tag list reaches a renderer', { skip: notBuilt(), timeout: 240000 
         await until('readings again', isThere);
         assert.equal(list({ file }), list(nodes.plant));
         assert.deepEqual(await positionOf(renderer), [0.5, 0, 0.25]);
+        appendFileSync(tagsOf({ file }), PADDING);
+        const edited = list({ file });
+        await save(core, 0.3);
+        await renderer.program.line(/tags\.csv on node r was edited there, or never was equal to the core's list/);
+        assert.equal(list({ file }), edited);
     } finally {
         await nodes.destroy();
     }

@@ -82,7 +82,7 @@ test('a reloaded leader goes on with the lease confirmed by a standby that has n
     await core.program.line(/reload: configuration/);
     await other.program.line(/configuration: the renderer has .*only confirms the leader's lease/);
     await two.goesOn(t, core, 5);
-    assert.match(core.program.said, /standby .*: refused: configuration: .*; this core cannot take over, but still confirms/);
+    assert.match(core.program.said, /standby .*: refused: configuration: .*; the standby cannot take over, but still confirms/);
     other.program.child.kill('SIGHUP');
     await other.program.line(/reload: configuration/);
     for (const one of [core, other])
@@ -163,7 +163,7 @@ test('a standby of another version is named, shows nothing, votes and takes over
     await other.program.stop('SIGKILL');
     await begin(other);
     await other.program.line(new RegExp(`version: the renderer has ${newer.other}, this node ${newer.version}.*only confirms`));
-    const noStandby = `refused: version: the renderer has ${newer.other}, .*; this core cannot take over, but still confirms`;
+    const noStandby = `refused: version: the renderer has ${newer.other}, .*; the standby can take over, and confirms`;
     assert.match(core.program.said, new RegExp(noStandby));
     assert.ok(Object.values(await other.node.tags()).every(({ value }) => value === null));
     await until('its promise', async () => await core.node.metric('plantcast_core_standby_differs') === 1);

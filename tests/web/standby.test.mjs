@@ -14,4 +14,6 @@ test('the page is silent while the standby is up to date, and otherwise names fi
     const behind = standbyText({ connected: true, node: 'c2', files: ['plant', 'models'], why: 'disk full' });
     assert.match(behind, /c2 .*plant file, models.*: disk full$/);
     assert.match(standbyText({ connected: true, node: 'c2', files: [], why: 'version' }), /c2 cannot take over: version$/);
+    const other = { connected: true, node: 'c2', files: [], why: 'version', takes_over: true };
+    assert.match(standbyText(other), /c2 can take over, .*: version$/);
 });

@@ -7,10 +7,11 @@ import { say } from './words.js';
 export function standbyText(standby) {
     if (!standby)
         return '';
-    const { connected, node, why } = standby, files = (standby.files ?? []).map((name) => say(`standby.${name}`)).join(', ');
+    const { connected, node, why, takes_over : takesOver } = standby,
+                                                         files = (standby.files ?? []).map((name) => say(`standby.${name}`)).join(', ');
     if (!connected)
         return say('standby.none');
     if (why)
-        return files ? say('standby.behind', { node, files, why }) : say('standby.refused', { node, why });
+        return files ? say('standby.behind', { node, files, why }) : say(`standby.${takesOver ? 'warned' : 'refused'}`, { node, why });
     return files ? say('standby.getting', { node, files }) : '';
 }

@@ -694,8 +694,9 @@ undone: Zurückgenommen. {kept} gilt wieder.
 plant: Anlagendatei
 tags: Messstellenliste
 models: Modelle
-none: Kein Reserveserver ist verbunden. Sobald er sich verbindet, erhält er die gespeicherte Messstellenliste.
+none: Kein Reserveserver ist verbunden.
 getting: Der Reserveserver {node} hat diese Dateien noch nicht: {files}.
 behind: Der Reserveserver {node} hat diese Dateien nicht erhalten ({files}): {why}
 refused: Der Reserveserver {node} kann nicht übernehmen: {why}
+warned: Der Reserveserver {node} kann übernehmen, weicht aber ab: {why}
 `;

@@ -693,8 +693,9 @@ undone: Undone. {kept} applies again.
 plant: plant file
 tags: tag list
 models: models
-none: No standby is connected. When a standby connects, it gets the saved tag list.
+none: No standby is connected.
 getting: The standby {node} does not yet have the new {files}.
 behind: The standby {node} has not got the {files}: {why}
 refused: The standby {node} cannot take over: {why}
+warned: The standby {node} can take over, but differs: {why}
 `;

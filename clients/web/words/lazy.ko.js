@@ -684,8 +684,9 @@ undone: 되돌렸습니다. {kept}이(가) 다시 적용됩니다.
 plant: 플랜트 파일
 tags: 태그 목록
 models: 모델
-none: 연결된 예비 서버가 없습니다. 예비 서버가 연결되면 저장된 태그 목록을 받습니다.
+none: 연결된 예비 서버가 없습니다.
 getting: 예비 서버 {node}에 아직 새 파일이 없습니다: {files}.
 behind: 예비 서버 {node}이(가) 다음 파일을 받지 못했습니다({files}): {why}
 refused: 예비 서버 {node}이(가) 넘겨받을 수 없습니다: {why}
+warned: 예비 서버 {node}이(가) 넘겨받을 수 있지만 다음이 다릅니다: {why}
 `;
