@@ -20,6 +20,7 @@ struct transfer {
     size_t bytes, at;
     char why[CURL_ERROR_SIZE];
     struct log *log;
+    int *refused;      /* counts refused mailboxes */
     const char *name;  /* id of the recipient in the plant file, for the log */
     char mailbox[256]; /* mailbox named by the last RCPT command of the SMTP dialogue; empty: the last command was another one */
 };
@@ -29,6 +30,7 @@ struct delivery {
     const struct plant_notify *notify;
     CURLM *multi;
     struct transfer *transfers; /* by recipient: its transfer */
+    int refused_mailboxes;
 };
 
 struct delivery *delivery_create(struct log *log, const struct plant_notify *notify)
@@ -106,8 +108,10 @@ static int hear_refusals(CURL *handle, curl_infotype type, char *bytes, size_t c
         snprintf(transfer->mailbox, sizeof(transfer->mailbox), "%.*s", length - (int)skipped, bytes + skipped);
     else if (type == CURLINFO_HEADER_OUT)
         transfer->mailbox[0] = 0;
-    else if (type == CURLINFO_HEADER_IN && transfer->mailbox[0] && length > 0 && (bytes[0] == '4' || bytes[0] == '5'))
+    else if (type == CURLINFO_HEADER_IN && transfer->mailbox[0] && length > 0 && (bytes[0] == '4' || bytes[0] == '5')) {
+        ++*transfer->refused;
         log_warn(transfer->log, "notify: %s: the mail server refused %s: %.*s", transfer->name, transfer->mailbox, length, bytes);
+    }
     return 0;
 }
 
@@ -191,7 +195,12 @@ char *delivery_start(struct delivery *delivery, int recipient, char *body, size_
 {
     const struct notify_recipient *to = &delivery->notify->recipients[recipient];
     struct transfer *transfer = &delivery->transfers[recipient];
-    *transfer = (struct transfer){ .handle = curl_easy_init(), .body = body, .bytes = bytes, .log = delivery->log, .name = to->id };
+    *transfer = (struct transfer){ .handle = curl_easy_init(),
+                                   .body = body,
+                                   .bytes = bytes,
+                                   .log = delivery->log,
+                                   .refused = &delivery->refused_mailboxes,
+                                   .name = to->id };
     char *why = !transfer->handle          ? mem_strdup("out of memory")
                 : to->kind == NOTIFY_EMAIL ? set_mail(delivery, transfer, to)
                                            : set_http(delivery, transfer, to);
@@ -243,4 +252,9 @@ void delivery_wait(struct delivery *delivery, int timeout_ms, void (*each)(void 
 void delivery_wake(struct delivery *delivery)
 {
     curl_multi_wakeup(delivery->multi);
+}
+
+int delivery_refused_mailboxes(const struct delivery *delivery)
+{
+    return delivery->refused_mailboxes;
 }

@@ -22,6 +22,7 @@ char *delivery_start(struct delivery *delivery, int recipient, char *body, size_
 /* Waits up to timeout_ms for network activity, and calls each() for every message that was sent or failed; `why` is NULL if the
    recipient's server accepted the message. */
 void delivery_wait(struct delivery *delivery, int timeout_ms, void (*each)(void *arg, int recipient, const char *why), void *arg);
+int delivery_refused_mailboxes(const struct delivery *delivery); /* returns the number of mailboxes that mail servers have refused so far */
 void delivery_wake(struct delivery *delivery); /* Makes delivery_wait() return. Call from any thread. */
 
 #endif

@@ -56,6 +56,9 @@ int test_messages_send(struct log *log, const struct plant *plant, FILE *out)
     }
     while (run.waiting > 0)
         delivery_wait(delivery, 1000, on_end, &run);
+    int refused = delivery_refused_mailboxes(delivery);
+    if (refused > 0)
+        fprintf(out, "mail servers refused %d mailbox%s: the warnings name each\n", refused, refused == 1 ? "" : "es");
     delivery_destroy(&delivery);
-    return run.failed;
+    return run.failed + refused;
 }

@@ -313,7 +313,10 @@ ${recipients}  rules: [{ id: nobody, areas: "No such area", to: ops }]
         assert.equal(alerts[0].labels.severity, 'critical');
         assert.equal(alerts[0].annotations.summary, 'Test message, no alarm');
         assert.ok(Date.parse(alerts[0].endsAt) > Date.now(), 'Alertmanager would treat the test as ended at once');
+        assert.match(said, /^mail servers refused 1 mailbox: the warnings name each$/m);
         write(accepted);
+        assert.equal((await ask())[0], 1, 'a refused mailbox is a failure');
+        write(accepted.replace(', gone@p.example', ''));
         assert.equal((await ask())[0], 0);
         await mail.close();
     } finally {
