@@ -29,7 +29,9 @@ for (const name of ['firefox', 'webkit']) {
             });
             await page.pointer('mouseMoved', x, y);
             await page.pointer('mousePressed', x, y);
-            for (let n = 0; await page.evaluate(() => (globalThis.plantcast.viewport.warp?.updates ?? 0) < 5); n++)
+            const updates = () => page.evaluate(() => globalThis.plantcast.viewport.warp?.updates ?? 0);
+            const end = performance.now() + 120000;
+            for (let n = 0; performance.now() < end && await updates() < 5; n++)
                 await page.pointer('mouseMoved', x + 60 * Math.sin(n / 5), y + 20 * Math.cos(n / 7));
             const painter = await page.evaluate(() => globalThis.plantcast.viewport.warp.painter.constructor.name);
             assert.ok(['CpuPainter', 'GlPainter'].includes(painter), painter);

@@ -15,7 +15,7 @@ const CHROMIUM = process.env.CHROMIUM ?? '/usr/bin/chromium', FIREFOX = '/usr/bi
 const MINI_BROWSER = '/usr/lib/x86_64-linux-gnu/webkit2gtk-4.1/MiniBrowser';
 const ARGS = ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking'];
 const SCRIPT_MS = 600000; // longest time in milliseconds that a function may run in the page
-const POLL_MS = 20;
+const POLL_MS = 20, WAIT_MS = 120000;
 const PROGRAMS = { chromium: [CHROMIUM], firefox: [FIREFOX], webkit: [DRIVER, MINI_BROWSER] };
 
 // Returns why this machine cannot run the browser, or null.
@@ -39,12 +39,12 @@ const typed = (keys) => [{ type: 'key', id: 'keyboard', actions: keys.flatMap((v
 class Page {
     // Polls f in the page until its result is truthy, and returns the result.
     async wait(f, arg) {
-        for (;;) {
+        for (const end = performance.now() + WAIT_MS; performance.now() < end; await sleep(POLL_MS)) {
             const found = await this.evaluate(f, arg);
             if (found)
                 return found;
-            await sleep(POLL_MS);
         }
+        throw new Error(`not within ${WAIT_MS} ms: ${f}`);
     }
 
     async shoot(path) {
@@ -114,6 +114,8 @@ function started(program, args, ready, env = process.env) {
 }
 
 async function end(child) {
+    if (!child || child.exitCode !== null || child.signalCode !== null)
+        return;
     const gone = new Promise((done) => child.once('exit', done));
     child.kill();
     await gone;
@@ -183,7 +185,7 @@ class FirefoxPage extends Page {
     }
 
     async close() {
-        this.socket.terminate();
+        this.socket?.terminate();
         await end(this.child);
         rmSync(this.folder, { recursive: true, force: true, maxRetries: 10, retryDelay: 100 });
     }
@@ -246,7 +248,7 @@ class WebKitPage extends Page {
     async close() {
         await this.send('DELETE', this.session).catch(() => {});
         await end(this.child);
-        await this.display.stop();
+        await this.display?.stop();
     }
 }
 
@@ -254,6 +256,11 @@ class WebKitPage extends Page {
 // ratio: device pixels per CSS pixel; WebKitGTK always has 1.
 export async function drive(name, width, height, ratio = 1) {
     const page = new { chromium: ChromiumPage, firefox: FirefoxPage, webkit: WebKitPage }[name]();
-    await page.open(width, height, ratio);
+    try {
+        await page.open(width, height, ratio);
+    } catch (error) {
+        await page.close().catch(() => {}); // ends the browser, however far it has been started
+        throw error;
+    }
     return page;
 }
