@@ -110,7 +110,7 @@ exec '${bin}/real-prep' "$@"
             writeFileSync(join(plant.folder, 'box.gltf'), readFileSync(join(plant.folder, 'box.gltf'), 'utf8').replace('box', 'box2'));
             plant.bin = bin;
             await plant.startDaemon('--port', String(port));
-            assert.match(plant.daemon.said, /preparing the plant: /);
+            assert.match(plant.daemon.said, /prepared files are missing or outdated: running plantcast-prep/);
             heldBack('plantcast-prep', readFileSync(join(own, 'escaped'), 'utf8'));
             assert.equal(readFileSync(secret, 'utf8'), 'secret');
         } finally {

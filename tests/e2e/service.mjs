@@ -197,11 +197,11 @@ test('each request sent while the daemon restarts is answered, by the old daemon
 test('a port in use ends the daemon before it reports readiness', { skip }, async () => {
     const other = createServer().listen(0, '127.0.0.1');
     await new Promise((done) => other.once('listening', done));
-    const service = serve(['--port', String(other.address().port)]);
-    assert.equal(await service.ended, 1);
-    assert.doesNotMatch(service.out, /READY=1/);
-    assert.match(service.err, /error listen 127\.0\.0\.1 port \d+: Address already in use/);
+    const service = serve(['--port', String(other.address().port)]), code = await service.ended;
     other.close();
+    assert.equal(code, 1);
+    assert.doesNotMatch(service.out, /READY=1/);
+    assert.match(service.err, /error cannot listen on address 127\.0\.0\.1, port \d+: Address already in use/);
 });
 
 test('log lines for the journal begin with their priority, and have no timestamp', {

@@ -117,7 +117,7 @@ TEST(test_wrong_values_are_named)
     write_values("tag,value,quality\nTE-101,warm,good\nNO-SUCH,1,good\nTE-102,1,perhaps\n");
     char *options = test_printf("--values %s/values.csv", folder);
     assert_int_equal(draw(options), 1);
-    assert_true(said("values.csv:2:8: error: value 'warm'") && said("values.csv:3:1: error: tag 'NO-SUCH'"));
+    assert_true(said("values.csv:2:8: error: value: expected a number, found 'warm'") && said("values.csv:3:1: error: tag 'NO-SUCH'"));
     assert_true(said("values.csv:4:10: error: quality: expected good, uncertain or bad, found 'perhaps'"));
 }
 
