@@ -66,7 +66,7 @@ test('each mistake in a fleet file is reported with its line', options, () => {
     for (const line of [/fleet\.yaml:3:\d+: error: url: the plant at https:\/\/a\.example\/ is listed twice \(first at line 2\)/,
         /fleet\.yaml:4:\d+: error: id: plant 'a' is listed twice \(first at line 2\)/, /fleet\.yaml:5:\d+: error: id: expected/,
         /fleet\.yaml:5:\d+: error: url: the plant's address must begin with/,
-        /fleet\.yaml:6:\d+: error: url: expected an address without a password/,
+        /fleet\.yaml:6:\d+: error: url: the plant's address must not contain a password/,
         /fleet\.yaml:7:\d+: error: .*needs the key 'id'/, /fleet\.yaml:7:\d+: error: poll_s: expected/,
         /fleet\.yaml:8:\d+: error: url: a plant with `token_file` needs .*https/])
         assert.match(bad.err, line);

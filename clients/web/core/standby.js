@@ -12,6 +12,7 @@ export function standbyText(standby) {
     if (!connected)
         return say('standby.none');
     if (why)
-        return files ? say('standby.behind', { node, files, why }) : say(`standby.${takesOver ? 'warned' : 'refused'}`, { node, why });
+        return files ? say('standby.behind', { node, files, why })
+            : takesOver ? say('standby.warned', { node, why }) : say('standby.refused', { node, why });
     return files ? say('standby.getting', { node, files }) : '';
 }
