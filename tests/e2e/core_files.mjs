@@ -126,7 +126,14 @@ test('a standby that cannot write says so, and gets the list once it can', optio
     const core = await two.leader(), other = two.other(core), folder = dirname(other.file), before_ = list(other), names = files(other);
     const remount = (how) => execFileSync('nsenter', ['-t', String(other.program.child.pid), '-m', 'mount', '-o', `remount,bind,${how}`,
         folder]);
-    remount('ro');
+    await until('a moment at which no program writes to the folder', () => {
+        try {
+            return !remount('ro').length;
+        } catch (error) {
+            assert.match(String(error.stderr), /busy/);
+            return false;
+        }
+    });
     await save(core.node, 0.35);
     await core.program.line(/standby \w+: has not got this core's tag list: \S+tags\.csv: .*Read-only file system/);
     const { files: differing, why } = await learns(core, (standby) => standby.why);
