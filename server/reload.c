@@ -50,7 +50,7 @@ struct reload {
     char by[TOKEN_NAME_BYTES];     /* user who requested the running reload */
     const struct tag_save *saving; /* tag list that the running reload saves; NULL: none */
     const char *kept;              /* path under which the previous version of the tag list is kept */
-    char *failure;                 /* reason why the last reload failed; NULL: it succeeded */
+    char *failure;                 /* reason why the last reload that failed did so; NULL: none failed yet */
     char *unmatched;               /* last reported reason why this node has not got its core's files; NULL: none */
     _Atomic bool stops;            /* true: the daemon ends, so a transfer of a tag list must end */
     struct refusal refusal;        /* reason why the running reload could not save the tag list; REFUSAL_NONE: it was saved */
@@ -458,10 +458,18 @@ static char *get_tags(struct reload *reload, const char *hash, char **why)
     struct core_link *link = (*reload->runtime)->services.core_link;
     bool good = link && core_tags_begin(&request, link, &reload->stops);
     pthread_mutex_unlock(&reload->put_lock);
-    char *text = good ? core_tags_get(&request, hash, why) : NULL;
-    if (!good)
-        *why = mem_strdup("no leading core is known");
+    char is[17] = "", *text = good ? core_tags_get(&request, why) : NULL;
     http_request_finish(&request);
+    if (text)
+        tag_file_hash(text, is);
+    if (!good) {
+        *why = mem_strdup("no leading core is known");
+    } else if (text && strcmp(is, hash) != 0) {
+        *why = mem_strdup("the leading core's tag list is not the one that this core has loaded: it is being saved, or was changed without "
+                          "a reload of the leading core");
+        mem_free(text);
+        text = NULL;
+    }
     return text;
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Queries the core for recorded data over HTTP, with libcurl. */
+/* Queries the core for recorded data over HTTP. */
 #include "corelink/core_history.h"
 
 #include <stdatomic.h>
@@ -7,11 +7,10 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "base/system/http_request.h"
 #include "corelink/core_instant.h"
+#include "corelink/core_request.h"
 
-enum { MAX_ANSWER_BYTES = 64 << 20, CONNECT_S = 4, SLOW_S = 10 /* SLOW_S: seconds without a received byte after which a query
-                                                                  fails */, STATUS_GOOD = 200 };
+enum { MAX_ANSWER_BYTES = 64 << 20 };
 
 struct core_history {
     struct log *log;
@@ -26,16 +25,11 @@ struct core_history *core_history_create(struct log *log, struct core_link *link
 {
     struct core_history *history = mem_new(sizeof(*history));
     *history = (struct core_history){ .log = log, .link = link, .stop = stop, .request = { .stop = stop } };
-    if (!http_request_make(&history->request, "plantcastd", NULL)) {
+    if (!core_request_make(&history->request)) {
         log_err(log, "history: cannot start the HTTP client that reads the core's history");
         core_history_destroy(&history);
         return NULL;
     }
-    CURL *handle = history->request.handle;
-    curl_easy_setopt(handle, CURLOPT_PROXY, "");
-    curl_easy_setopt(handle, CURLOPT_CONNECTTIMEOUT, (long)CONNECT_S);
-    curl_easy_setopt(handle, CURLOPT_LOW_SPEED_LIMIT, 1L);
-    curl_easy_setopt(handle, CURLOPT_LOW_SPEED_TIME, (long)SLOW_S);
     return history;
 }
 
@@ -65,44 +59,27 @@ static bool fail(struct core_history *history, const char *path, const char *why
     return false;
 }
 
-/* Logs that the core refused a query, with the first line of the core's answer. */
-static bool refused(struct core_history *history, const char *path, long status, const char *text)
-{
-    char why[120];
-    snprintf(why, sizeof(why), "the core answered with HTTP status %ld: %.*s", status, (int)strcspn(text, "\r\n"), text);
-    return fail(history, path, why);
-}
-
 bool core_history_get(struct core_history *history, const char *path, struct text *out)
 {
     struct core_peer peer;
-    long status = 0;
+    struct http_request *request = &history->request;
     if (!core_link_peer(history->link, &peer))
         return fail(history, path, "not connected to the core");
-    char *url = mem_printf("%s%s", peer.url, path);
-    struct http_request *request = &history->request;
-    http_request_authorize(request, "", peer.authorization[0] ? peer.authorization : NULL);
-    curl_easy_setopt(request->handle, CURLOPT_URL, url);
-    if (peer.ca_path)
-        curl_easy_setopt(request->handle, CURLOPT_CAINFO, peer.ca_path);
+    core_request_address(request, &peer, path);
     size_t begin = out->length; /* the HTTP answer is appended to the text that *out already contains */
     request->answer = *out;
     request->most_bytes = begin + MAX_ANSWER_BYTES;
-    request->error[0] = 0;
-    CURLcode code = curl_easy_perform(request->handle);
-    curl_easy_getinfo(request->handle, CURLINFO_RESPONSE_CODE, &status);
+    char *why = core_request_send(request);
     *out = request->answer;
     request->answer = (struct text){ 0 };
-    mem_free(url);
-    bool good = code == CURLE_OK && status == STATUS_GOOD;
+    bool good = !why;
     if (good)
         history->said[0] = 0;
-    else if (code != CURLE_OK)
-        fail(history, path, http_request_why(request, code));
     else
-        refused(history, path, status, out->at ? out->at + begin : "");
+        fail(history, path, why);
     if (!good && out->at)
         out->at[out->length = begin] = 0;
+    mem_free(why);
     return good;
 }
 

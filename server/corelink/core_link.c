@@ -15,6 +15,7 @@
 #include "base/mem.h"
 #include "base/text/json_text.h"
 #include "base/text/text.h"
+#include "base/text/utf8.h"
 #include "base/thread.h"
 #include "corelink/core_alarms.h"
 #include "corelink/core_identity.h"
@@ -187,12 +188,15 @@ bool core_link_tell(struct core_link *link, const char *text)
 
 void core_link_report_files(struct core_link *link, const char *why)
 {
+    char *text = mem_strdup(why);
+    utf8_drop_invalid(text); /* paths and a core's answer may contain any bytes, JSON may not */
     pthread_mutex_lock(&link->thread.lock);
     if (link->is_known && link->context) {
-        queue(link, json_text(json_pack("{s:s,s:s}", "type", "files", "why", why), 0));
+        queue(link, json_text(json_pack("{s:s,s:s}", "type", "files", "why", text), 0));
         lws_cancel_service(link->context);
     }
     pthread_mutex_unlock(&link->thread.lock);
+    mem_free(text);
 }
 
 /* --- handling messages from the core ------------------------------------------------------------------------------------------ */

@@ -11,9 +11,8 @@
 /* Prepares the request for the tag list of the core that core_link_leader() names. The link may be freed afterwards. stop: flag
    that ends the request soon. Returns false if there is no such core, or no memory. End with http_request_finish(). */
 bool core_tags_begin(struct http_request *request, struct core_link *link, const _Atomic bool *stop);
-/* Requests the tag list. Returns its text, if its hash (tag_file_hash()) is `hash`; free with mem_free(). Otherwise returns NULL
-   with the reason in *why (mem_free). */
-char *core_tags_get(struct http_request *request, const char *hash, char **why);
+/* Requests the tag list. Returns its text (mem_free), or NULL with the reason in *why (mem_free). */
+char *core_tags_get(struct http_request *request, char **why);
 
 /* Records in a folder the hash of the tag list that this node and its core have in common. A list without a record was edited on
    this machine, and must not be overwritten. Returns 0 or -errno. */

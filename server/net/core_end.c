@@ -74,8 +74,6 @@ static void take_refusal(struct server_context *server, const json_t *refusal)
     server->core.reloads = false;
     if (server->params.match && core_files_read(refusal, &files))
         server->params.match(server->params.reload_arg, &files, configuration);
-    else
-        follow(server, 0, configuration);
 }
 
 /* Handles the hashes of files in the core's introduction: logs that the core has other models, and records the common tag list. */
