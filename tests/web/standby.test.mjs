@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the page tells engineers about the standby.
+// Tests the sentences about the standby that the page shows to engineers.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { standbyText } from '../../clients/web/core/standby.js';

@@ -60,8 +60,8 @@ class Taken {
             this.cells.set(key, [...(this.cells.get(key) ?? []), box]);
     }
 
-    // Returns true if the box meets an occupied one, or comes too close to an alarm ring. over: markers to ignore: 1: those without
-    // an alarm ring; 2: all. owner: item whose own marker is ignored. own: ids of the items whose rings the box may approach.
+    // Returns true if the box meets an occupied one, or comes too close to an alarm ring. over: 1: markers without an alarm ring are
+    // ignored; 0: no marker is. owner: item whose own marker is ignored. own: ids of the items whose rings the box may approach.
     meets(box, owner, over = 0, own = null) {
         return this.keys(box).some((key) => (this.cells.get(key) ?? []).some((other) =>
             other.owner !== owner && !(other.mark <= over) && meets(box, other) && (other.mark !== 2 || this.meetsRing(box, other, own))));
