@@ -568,7 +568,9 @@ static void agree_now(struct reload *reload, const char *hash)
 {
     report_unmatched(reload, NULL);
     char *folder = record_folder(reload);
-    int error = core_tags_agree(folder, hash);
+    /* while this node got a later list, the core may have returned to this one: then the file holds the later list, whose record stays */
+    bool is_saved = has_hash((*reload->runtime)->plant->files.tags_path, hash);
+    int error = is_saved ? core_tags_agree(folder, hash) : core_tags_expect(folder, hash);
     if (error)
         log_warn(reload->context->log,
                  "core: %s: cannot record that this node and its core have the same tag list (%s): this node will not get the next one "
