@@ -2,7 +2,9 @@
 // The chart of trends, with an object that records calls instead of the chart library.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
+import { LOOKS } from '../../clients/web/app/trends/chart_style.js';
 import { Plot } from '../../clients/web/app/trends/plot.js';
+import { bands } from '../../clients/web/core/trend_values.js';
 
 const SPAN = [0, 100e6];
 const series = (tag) => ({ tag, bucket_us: 0, points: [[0, 1, 0], [50e6, 2, 0]] });
@@ -85,4 +87,61 @@ test('a limit\'s name is on its line beside the curve, shortened or above the li
     assert.ok(above.top > 20, 'the name does not cover the curve');
     const zigzag = Array.from({ length: 31 }, (_, i) => [10 * i, i % 2 ? 60 : 0]);
     assert.deepEqual(namesBeside(zigzag, [limit]), [], 'no name is placed beside a curve that is everywhere');
+});
+
+const GOOD = 0, UNSURE = 0x40000000, LOST = 0x80000000; // OPC UA status codes
+
+// Calls a method of the chart that draws. A chart of 100 x 100 pixels shows one tag from 0 to 100 s, one pixel per second and per
+// unit. Returns the calls of the drawing context: [{ name, args, fillStyle, strokeStyle, globalAlpha, lineWidth }, ...].
+function callsOf(method, series, { alarms = [], args = [] } = {}) {
+    const { show, plot } = plotOf('bar'), tag = { name: 'A' }, calls = [], state = { canvas: { width: 100, height: 100 } };
+    globalThis.devicePixelRatio = 1;
+    show([tag], [tag]);
+    Object.assign(plot, { rows: [{ tag, series, alarms }], bands: [bands(series)] });
+    Object.assign(plot.view, { look: LOOKS.light, priorities: ['#111111', '#222222'], focus: null });
+    const ctx = new Proxy(state, { get: (of, name) => of[name] ?? ((...given) => calls.push({ name, args: given, ...of })) });
+    const bbox = { left: 0, top: 0, width: 100, height: 100 }, valToPos = (value, scale) => (scale === 'x' ? value : 100 - value);
+    plot[method]({ ctx, bbox, valToPos, posToVal: () => 0, series: [{}, { _paths: { stroke: 'curve' } }] }, ...args);
+    return { plot, calls, named: (name) => calls.filter((call) => call.name === name) };
+}
+
+test('a coarse chart has a translucent band from the lowest to the highest value of each interval', () => {
+    const points = [[0, 1, 90, 5, 2, 3, 0, GOOD], [10e6, 20, 40, 30, 30, 40, 0, GOOD]];
+    const { named } = callsOf('drawBands', { tag: 'A', bucket_us: 10e6, points });
+    assert.deepEqual(named('lineTo').map(({ args }) => args),
+        [[0, 10], [10, 10], [10, 60], [20, 60], [20, 80], [10, 80], [10, 99], [0, 99]]);
+    const [{ globalAlpha, fillStyle }] = named('fill');
+    assert.ok(fillStyle === 'red' && globalAlpha > 0.1 && globalAlpha < 0.5);
+});
+
+test('a curve is dashed where its values are uncertain, and only there', () => {
+    const points = [[0, 50, GOOD], [20e6, 50, UNSURE], [40e6, 50, GOOD]];
+    const { calls, named } = callsOf('drawQuality', { tag: 'A', bucket_us: 0, points }, { args: [1] });
+    assert.deepEqual(named('rect').map(({ args }) => args), [[20, 0, 20, 100]], 'the dashes are clipped to the uncertain time');
+    const [stroke] = named('stroke'), dash = calls.findLast(({ name }) => name === 'setLineDash').args[0];
+    assert.equal(stroke.args[0], 'curve');
+    assert.ok(dash.length === 2 && dash.every((px) => px > 2) && stroke.strokeStyle === LOOKS.light.ground,
+        'the curve is interrupted with the colour of the ground');
+});
+
+test('a time without values is hatched over the whole height of a chart with one tag', () => {
+    const points = [[0, 50, GOOD], [30e6, null, LOST], [60e6, 50, GOOD]];
+    const { named } = callsOf('drawGaps', { tag: 'A', bucket_us: 0, points });
+    assert.deepEqual(named('rect').map(({ args }) => args), [[0, 0, 100, 100], [30, 0, 30, 100]]);
+    assert.equal(named('stroke').length, 1);
+    assert.ok(named('moveTo').length > 5, 'the hatching has several lines');
+});
+
+test('an alarm is a broad line along the curve while it lasts, and a triangle where it was raised', () => {
+    const alarm = { us: 10e6, endUs: 30e6, priority: 2, value: 60, limit: 50, tag: 'A', kind: 'H' };
+    const { plot, named } = callsOf('drawAlarms', { tag: 'A', bucket_us: 0, points: [[0, 50, GOOD]] }, { alarms: [alarm] });
+    const pens = named('stroke').filter(({ args }) => args[0] === 'curve');
+    assert.ok(named('rect').every(({ args }) => args.join() === '10,0,20,100'));
+    const colours = pens.map(({ strokeStyle }) => strokeStyle), widths = pens.map(({ lineWidth }) => lineWidth);
+    assert.deepEqual(colours, [LOOKS.light.edge, '#222222', 'red'], 'edge, priority and curve, one over the other');
+    assert.ok(widths[0] > widths[1] && widths[1] > 2 * widths[2]);
+    assert.deepEqual([named('moveTo')[0].args[0], named('fill')[0].fillStyle], [10, '#222222']);
+    plot.chart.over = { clientWidth: 100 };
+    plot.view.spanUs = 100e6;
+    assert.deepEqual([plot.alarmsNear(12e6), plot.alarmsNear(60e6)], [[alarm], []]);
 });
