@@ -3,6 +3,7 @@
 import assert from 'node:assert/strict';
 import { readdirSync, readFileSync } from 'node:fs';
 import { test } from 'node:test';
+import { INK, Overlay } from '../../clients/web/app/viewport/overlay.js';
 import { projector } from '../../clients/web/core/camera.js';
 import { placeRings } from '../../clients/web/core/callouts.js';
 import { FIRST_FAR, leaderLine, placeLabels } from '../../clients/web/core/labels.js';
@@ -215,4 +216,14 @@ test('a leader line runs from the rim of its marker to the nearest point of its 
     assert.deepEqual([x2, y2], [122, 130]);
     assert.ok(Math.abs(Math.hypot(x1 - 100, y1 - 100) - 5) < 1e-9);
     assert.equal(FIRST_FAR, 12);
+});
+
+test('a leader line is dark with a light outline, so that it is visible on every colour', () => {
+    const lines = [], context = { beginPath() {}, moveTo() {}, lineTo() {}, stroke() {
+        lines.push([this.strokeStyle.startsWith('rgb(255 255 255') ? 'light' : this.strokeStyle, this.lineWidth]);
+    } };
+    Overlay.prototype.drawLeader.call({ context, radius: 4 }, { x: 100, y: 100, ring: true }, box([150, 90, 210, 110]));
+    const [[light, wide], [dark, narrow]] = lines;
+    assert.deepEqual([light, dark, lines.length], ['light', INK, 2], 'the dark line is drawn over the light one');
+    assert.ok(wide >= narrow + 1.5, `widths: ${wide}, ${narrow}`);
 });
