@@ -308,3 +308,32 @@ test('pictures wait for their depth, but not for a worker that does not answer',
         mock.timers.reset();
     }
 });
+
+// Returns an object with the members of Warp that decide whether a picture is warped: a picture of 1280x720 whose camera the user
+// has moved a little. in the session, fly: the camera's flight, or null.
+function ahead({ fly = null, source = { camera: PERSPECTIVE }, ...session } = {}) {
+    const picture = { cameraSeq: 1, shownWidth: 1280, fullWidth: 1280, fullHeight: 720 };
+    const camera = { ...PERSPECTIVE, eye: [6.3, -8.7, 5] };
+    return Object.assign(Object.create(Warp.prototype), { source, modules: { there: () => ({ fly }) },
+        session: { picture, camera, cameraSeq: 2, cameraNews: null, leader: null, lent: false, ...session } });
+}
+
+test('only a picture that lags behind the user\'s own camera is warped: no flight, no followed view, no jump, no other shape', () => {
+    const { picture } = ahead().session, sharp = { ...picture, fullWidth: 2560, fullHeight: 1440, shownWidth: 2560 };
+    for (const warped of [{}, { picture: sharp }, { picture: { ...picture, cameraSeq: 2 }, cameraNews: {} }])
+        assert.equal(ahead(warped).isWanted, true, JSON.stringify(warped));
+    for (const plain of [{ leader: 7 }, { lent: true }, { fly: {} }, { source: null }, { camera: { ...PERSPECTIVE, eye: [-6, -9, 5] } },
+        { camera: PARALLEL }, { picture: { ...picture, cameraSeq: 2 } }, { picture: { ...picture, shownWidth: 960 } }])
+        assert.equal(ahead(plain).isWanted, false, JSON.stringify(plain));
+});
+
+test('if a picture comes without depth, or its depth cannot be decoded, the page stops warping', () => {
+    for (const grid of [null, { messages: [] }]) {
+        const canvas = { style: { display: '' } }, picture = { ...ahead().session.picture, camera: PERSPECTIVE, depth: grid };
+        const warp = Object.assign(ahead({ picture }), { canvas, isShown: true, held: null, loaded: {}, painted: {},
+            grids: grid ? [{ depth: grid, parts: null, fails: true }] : [] });
+        assert.equal(warp.draw(), true, 'the screen changes');
+        assert.deepEqual([warp.isShown, warp.source, canvas.style.display, picture.camera], [false, null, 'none', PERSPECTIVE]);
+        assert.equal(warp.draw(), false);
+    }
+});
