@@ -287,6 +287,12 @@ test('switching the projection shows as much at the target', () => {
     assert.ok(Math.abs(projector(parallel, 1600, 900)(above)[1] - projector(camera, 1600, 900)(above)[1]) < 2);
 });
 
+test('without a duration, as for users who prefer reduced motion, a flight consists of its end alone', () => {
+    const from = { eye: [10, 0, 5], target: [0, 0, 0], up: [0, 0, 1], fov: 45 }, to = { ...from, eye: [0, 12, 3] };
+    assert.equal(flight(from, to, 0)(0), to);
+    assert.notEqual(flight(from, to)(0), to);
+});
+
 test('a flight to the other projection ends there, and the server would accept every camera on the way', () => {
     const to = fit(toParallel(camera), { min: [-3, -1, 0], max: [3, 1, 2] }, 1.6);
     for (const [a, b] of [[camera, to], [to, camera], [to, toParallel(camera)]]) {
