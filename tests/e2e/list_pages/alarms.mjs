@@ -344,6 +344,12 @@ test('at 900 pixels the alarm list shows at least twenty rows, sorts by any colu
     assert.deepEqual([...new Set(await column('area'))], [area]);
     await shoot(page, 'alarms-area');
     await page.locator('#alarms-area').selectOption('');
+    const priorities = await column('priority');
+    for (const chosen of ['1', '2', '3', '4']) {
+        await page.locator('#alarms-priority').selectOption(chosen);
+        await becomes(() => column('priority'), priorities.filter((one) => one === chosen));
+    }
+    await page.locator('#alarms-priority').selectOption('');
 });
 
 test('the list\'s edge can be dragged and moved by keys; its size survives a reload and can be reset', options, async () => {
@@ -413,6 +419,11 @@ test('the journal has the list\'s columns, a time range, and each change', optio
     await page.locator('#alarms-words').fill(HOT);
     await becomes(async () => [...new Set(await page.locator('#journal-list td[data-col=tag]').allTextContents())], [HOT]);
     await shoot(page, 'alarms-journal');
+    const [download] = await Promise.all([page.waitForEvent('download'), page.locator('#alarms-csv').click()]);
+    const [titles, ...lines] = readFileSync(await download.path(), 'utf8').trim().split('\r\n').map((line) => line.split(','));
+    assert.deepEqual([download.suggestedFilename(), titles[2]], ['alarm_journal.csv', 'event']);
+    assert.equal(lines.length, await page.locator('#journal-list tr').count(), 'the file has the rows that the filter leaves');
+    assert.ok(lines.every(([, , event, , tag]) => event === 'raise' && tag === HOT), JSON.stringify(lines));
     await page.locator('#journal-span').selectOption('chosen');
     for (const [id, text] of [['from', '2020-01-01T00:00'], ['to', '2020-01-02T00:00']])
         await page.locator(`#journal-${id}`).fill(text);
@@ -426,6 +437,7 @@ test('the journal has the list\'s columns, a time range, and each change', optio
 
 test('the moment before an alarm opens half a minute before it, at its place, and names the alarm', options, async () => {
     const row = page.locator('#alarms-list tr').first(), name = await row.locator('td[data-col=tag]').textContent();
+    const before = await page.evaluate(() => globalThis.plantcast.session.camera.eye);
     const raisedUs = await page.evaluate((of) =>
         globalThis.plantcast.session.model.alarms.list().find(({ tag }) => tag.name === of).raisedUs, name);
     // Waits until the alarm is 4 s old. The history of an instant is complete after 3 s; for a newer instant the server would
@@ -437,6 +449,11 @@ test('the moment before an alarm opens half a minute before it, at its place, an
     await page.locator('#moment', { hasText: new RegExp(`${name} High.*raised .* · 30 s before`) }).waitFor();
     await page.waitForFunction((tag) => globalThis.plantcast.selection.tag === tag, name);
     await settle(page);
+    assert.notDeepEqual(await page.evaluate(() => globalThis.plantcast.session.camera.eye), before, 'the camera flies to the tag');
+    await page.waitForFunction((tag) => globalThis.plantcast.overlay.markers.some((marker) => marker.tag.name === tag &&
+        !marker.occluded), name);
+    const size = await page.locator('#moment strong').evaluate((e) => parseFloat(getComputedStyle(e).fontSize));
+    assert.ok(size >= 20, `the alarm's name is ${size} px high`);
     await shoot(page, 'alarms-moment');
     await page.locator('#moment .at').click();
     await page.waitForFunction((us) => globalThis.plantcast.session.time.atUs === us, Math.round(raisedUs));
