@@ -18,18 +18,25 @@ before(async () => {
     page = browser.page;
     await waitForPicture(page);
     await plant.ask('set TI-1 95');
-    await page.waitForFunction(() => [...globalThis.plantcast.session.model.alarms.rows.values()]
-        .some(({ state }) => state === 'unacknowledged'));
+    await plant.ask('set TI-2 92');
+    const raised = (...names) => page.waitForFunction((all) => all.every((name) =>
+        [...globalThis.plantcast.session.model.alarms.rows.values()]
+            .some(({ tag, state }) => tag.name === name && state === 'unacknowledged')), names);
+    await raised('TI-1', 'TI-2');
     await page.evaluate(() => {
         const { session } = globalThis.plantcast;
         const rows = [...session.model.alarms.rows.values()].filter(({ state }) => state === 'unacknowledged');
         const alarms = rows.map(({ tag, kind }) => [tag.name, kind]);
         session.post({ type: 'alarm', seq: 1, action: 'acknowledge', alarms, name: 'kim' });
-        session.post({ type: 'alarm', seq: 2, action: 'shelve', alarms: alarms.slice(0, 1), for_s: 3600, reason: 'sensor is checked',
-            name: 'kim' });
+        session.post({ type: 'alarm', seq: 2, action: 'shelve', alarms: alarms.filter(([tag]) => tag === 'TI-1'), for_s: 3600,
+            reason: 'sensor is checked', name: 'kim' });
         session.post({ type: 'note', seq: 1, text: 'Pump P-101A: <seal> drips', asset: 'P-101A', name: 'kim' });
     });
-    await page.waitForFunction(() => globalThis.plantcast.session.notes.length === 1);
+    await page.waitForFunction(() => globalThis.plantcast.session.notes.length === 1 &&
+        ['TI-1', 'TI-2'].every((name) => [...globalThis.plantcast.session.model.alarms.rows.values()]
+            .every(({ tag, state }) => tag.name !== name || ['acknowledged', 'shelved'].includes(state))));
+    await plant.ask('set PI-1 95'); // the only alarm that nobody has acknowledged
+    await raised('PI-1');
 });
 after(async () => {
     await browser?.close();
@@ -48,6 +55,10 @@ test('the handover page lists notes, alarms, acknowledgements and shelved alarms
     assert.match((await rows('raised')).join(), /TI-1 · High.*95\.\d+ \(90\.\d+\) °C/);
     const counts = Object.fromEntries((await page.locator('.counts span').allTextContents()).map((text) => text.split(': ')));
     const standing = await rows('standing');
+    const [first, second] = standing;
+    assert.match(first, /PI-1 · High.*P-101A, pump.*Unacknowledged.*95\.\d+ \(90\.\d+\) bar/, 'the most urgent alarm comes first');
+    assert.match(second, /TI-2 · High.*E-101, right.*Acknowledged.*92\.\d+ \(90\.\d+\) °C/);
+    assert.equal(standing.length, 2);
     assert.equal(Number(counts['Active now']), standing.filter((text) => !text.includes('Returned')).length);
     assert.match((await rows('asides')).join(), /TI-1 · High.*Shelved.*sensor is checked/);
     assert.equal((await rows('acknowledged')).filter((text) => text.includes('TI-1')).length, 1, 'one action counts once');
