@@ -5,7 +5,7 @@
 import assert from 'node:assert/strict';
 import { before, test } from 'node:test';
 import { demo } from './demo.mjs';
-import { openPage, PHONE, settle, shoot, waitForPicture } from '../support/browser.mjs';
+import { openPage, PHONE, settle, shoot, TABLET, waitForPicture } from '../support/browser.mjs';
 import { missing } from '../support/plant.mjs';
 import { sweep } from '../support/sweep.mjs';
 import { becomes } from '../support/until.mjs';
@@ -15,6 +15,7 @@ const options = { skip: why ?? false, timeout: 200000 };
 const SCREENS = {
     phone: PHONE,
     'phone across': { ...PHONE, viewport: { width: 844, height: 390 } },
+    tablet: TABLET,
     'low desk': { viewport: { width: 1280, height: 420 } },
     'far wall': { viewport: { width: 1920, height: 1080 }, query: '?wall=85,8' },
     ...sweep({
