@@ -74,6 +74,42 @@ test('a click opens a card of the place clicked, and the card stays open while v
     assert.equal(await page.locator('#place').isVisible(), false, 'the closed card does not come back');
 });
 
+test('each value on a sensor\'s card is beside its title, though the card hides some rows', options, async () => {
+    const name = await page.evaluate(() => globalThis.plantcast.session.model.tags.find(({ group, asset }) => group && asset).name);
+    await page.evaluate((tag) => globalThis.plantcast.selectTag(globalThis.plantcast.session.model.tag(tag)), name);
+    await page.locator('#card h3', { hasText: name }).waitFor();
+    const rows = await page.evaluate(() => [...document.querySelectorAll('#card dt')].map((title) => {
+        const [a, b] = [title, title.nextElementSibling].map((e) => e.getBoundingClientRect());
+        return { hidden: title.hidden, shown: [a, b].map(({ width }) => width > 0).join(), off: Math.abs(a.top - b.top),
+            beside: b.left >= a.right };
+    }));
+    assert.ok(rows.some(({ hidden }) => hidden), 'the card hides a row, for example of a drift that is not known yet');
+    for (const { hidden, shown, off, beside } of rows)
+        assert.ok(hidden ? shown === 'false,false' : shown.startsWith('true') && off < 3 && beside, JSON.stringify(rows));
+    await page.evaluate(() => globalThis.plantcast.selectTag(null));
+});
+
+test('for users who prefer reduced motion a flight is a single cut, for others it has cameras on the way', options, async () => {
+    const isReduced = () => page.evaluate(() => matchMedia('(prefers-reduced-motion: reduce)').matches), was = await isReduced();
+    const cameras = async (reducedMotion) => {
+        await page.emulateMedia({ reducedMotion });
+        await page.evaluate(() => globalThis.plantcast.modules.get('cameraController'));
+        await page.evaluate(() => {
+            const { session, cameraController } = globalThis.plantcast, { setCamera } = session;
+            globalThis.cameras = 0;
+            session.setCamera = (...given) => { globalThis.cameras++; setCamera.apply(session, given); };
+            cameraController.flyTo({ ...session.camera, eye: session.camera.eye.map((m) => 1.2 * m) });
+        });
+        await page.waitForFunction(() => !globalThis.plantcast.cameraController.fly);
+        return page.evaluate(() => { delete globalThis.plantcast.session.setCamera; return globalThis.cameras; });
+    };
+    assert.equal(await cameras('reduce'), 1);
+    const count = await cameras('no-preference');
+    assert.ok(count > 1, `${count} cameras`);
+    await page.emulateMedia({ reducedMotion: was ? 'reduce' : 'no-preference' });
+    await settle(page);
+});
+
 test('keys set the standard views and the parallel projection', options, async () => {
     await page.evaluate(() => globalThis.plantcast.session.setParams({ selected: null }));
     await page.keyboard.press('o');
