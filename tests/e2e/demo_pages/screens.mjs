@@ -61,6 +61,11 @@ const tooSmall = (page) => page.evaluate(() => [...document.querySelectorAll(
     .filter(({ box }) => box.height < 43.5 || box.width < 43.5)
     .map(({ what, box }) => `${what}: ${box.width}x${box.height}`));
 
+// Returns the controls of the toolbar that a thumb does not reach on a phone held upright in one hand: those in the upper half.
+const beyondThumb = (page) => page.evaluate(() => [...document.querySelectorAll('.actions button, #groups label, #assets-toggle')]
+    .map((e) => ({ name: e.id || e.textContent, box: e.getBoundingClientRect() }))
+    .filter(({ box }) => box.width > 0 && box.top < innerHeight / 2).map(({ name }) => name));
+
 // Returns parts of the page that extend beyond the screen, and texts that extend beyond their button.
 const sticksOut = (page) => page.evaluate(() => [
     // The row of quantities may extend beyond the screen, because it can be dragged.
@@ -514,6 +519,42 @@ test('phones: charts that would be too low are shown one at a time, with a switc
     }
 }));
 
+test('desktop: a trend takes eight tags and refuses a ninth, and all its charts share the crosshair', options, () => withPage(LARGE,
+    async (page) => {
+        await page.waitForFunction(() => globalThis.plantcast.session.recorded);
+        const ninth = await page.evaluate(() => {
+            const { addTrend, session: { model }, showTrend } = globalThis.plantcast;
+            const nine = ['temperature', 'pressure', 'vibration']
+                .flatMap((id) => model.tags.filter(({ group }) => group === id).slice(0, 3));
+            nine.slice(0, 8).forEach((tag, i) => (i === 0 ? showTrend : addTrend)(tag));
+            return nine[8].name;
+        });
+        const isDrawn = () => page.waitForFunction(() => {
+            const { trends } = globalThis.plantcast;
+            return trends?.series.size === 8 && !trends.isAsking && trends.plots.length === 2 && trends.plots.every(({ chart }) => chart);
+        });
+        await isDrawn();
+        const note = await page.evaluate((name) => {
+            const { session, trends } = globalThis.plantcast;
+            trends.add(session.model.tag(name));
+            return document.getElementById('trend-note').textContent;
+        }, ninth);
+        assert.match(note, /\b8\b/);
+        assert.equal(await page.locator('#trend-tags tbody tr').count(), 8);
+        await isDrawn();
+        await shoot(page, 'trend-eight');
+        for (const from of [0, 1]) {
+            const box = await page.locator('#trend-chart .u-over').nth(from).boundingBox(), part = [0.25, 0.75][from];
+            await page.mouse.move(box.x + part * box.width, box.y + box.height / 2);
+            await page.waitForFunction((at) => {
+                const { trends: { plots, crosshairUs, range: [begin, end] } } = globalThis.plantcast;
+                const parts = plots.map(({ chart }) => chart.cursor.left / chart.over.clientWidth);
+                return [...parts, (crosshairUs - begin) / (end - begin)].every((is) => Math.abs(is - at) < 0.02);
+            }, part);
+        }
+        await page.locator('#trend-close').click();
+    }));
+
 test('phone: two fingers pinch, twist and pan', options, () => withPage(PHONE, async (page) => {
     const box = await boxOf(page, '#viewport'), [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
     const hand = await touches(page), azimuth = ({ camera: { eye, target } }) => Math.atan2(eye[1] - target[1], eye[0] - target[0]);
@@ -555,6 +596,8 @@ test('phones: names and states are readable and complete, and controls are finge
         assert.equal(isOver, false, name);
         await becomes(() => tooSmall(page), [], name);
         await becomes(() => sticksOut(page), [], name);
+        if (height > width)
+            await becomes(() => beyondThumb(page), [], name);
         await shoot(page, `phone-${name}`);
 
         await page.locator('#more-toggle').tap();
