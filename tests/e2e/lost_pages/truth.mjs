@@ -11,7 +11,7 @@ import { openPage, settle, shoot, TABLET, waitForHealth, waitForPicture } from '
 import { Relay, relayMissing } from '../support/relay.mjs';
 import { sweep } from '../support/sweep.mjs';
 import { missing, TinyPlant } from '../support/tiny_plant.mjs';
-import { becomes } from '../support/until.mjs';
+import { becomes, until } from '../support/until.mjs';
 
 const absent = [...missing(), relayMissing()].filter(Boolean);
 const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : false, timeout: 200000 };
@@ -201,6 +201,45 @@ test('a slow link that stalls: the last picture stays, marked as old, and the vi
         await settle(page);
         assert.deepEqual(await view(), was);
         await page.locator('#banner').waitFor({ state: 'hidden' });
+    });
+    relay.close();
+});
+
+test('a link that stalls while the hand moves: the warped picture is marked as old, and the status bar tells how far it lags behind',
+    options, async () => {
+    const relay = await Relay.open(plant.port, { bytesPerS: 4e6, delayMs: 60 });
+    await withPage(`http://127.0.0.1:${relay.port}/?lang=en`, { viewport: { width: 1024, height: 768 } }, async (page) => {
+        await waitForHealth(page, 'live');
+        await settle(page);
+        const box = await page.locator('#viewport').boundingBox(), [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+        await page.mouse.move(x, y);
+        await page.mouse.down();
+        let moves = 0;
+        const drag = async (test) => {
+            await page.mouse.move(x + 60 * Math.sin(++moves / 8), y + 20 * Math.sin(moves / 5));
+            return page.evaluate(test);
+        };
+        await until('a warped picture', () => drag(() => globalThis.plantcast.viewport.warp?.isShown));
+        relay.child.kill('SIGSTOP'); // stops the relay: the connection stays open, but no data arrives
+        try {
+            await until('the mark of an old picture', () => drag(() => document.getElementById('viewport').classList.contains('is-old')));
+            await page.locator('#banner', { hasText: /This picture is [\d.]+ s old/ }).waitFor();
+            await until('the status bar', () => drag(() => /^[\d.]+ s behind$/.test(document.getElementById('latency').textContent) &&
+                document.getElementById('latency').parentElement.classList.contains('late')));
+            const isOver = await drag(() => {
+                const { warp } = globalThis.plantcast.viewport, mark = document.querySelector('.viewport > .old');
+                return Boolean(warp.isShown && mark.checkVisibility() &&
+                    warp.canvas.compareDocumentPosition(mark) & Node.DOCUMENT_POSITION_FOLLOWING);
+            });
+            assert.equal(isOver, true, 'the mark covers the warped picture');
+            await shoot(page, 'halted-drag');
+        } finally {
+            relay.child.kill('SIGCONT');
+        }
+        await page.mouse.up();
+        await waitForHealth(page, 'live');
+        await settle(page);
+        await page.waitForFunction(() => !document.getElementById('latency').parentElement.classList.contains('late'));
     });
     relay.close();
 });
