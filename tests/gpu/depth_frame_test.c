@@ -121,6 +121,16 @@ TEST_WITH(cuts_count_as_surfaces, set_up, stand_tear_down)
     check_view(&view);
 }
 
+/* A ghost is transparent: its pixels have the depth of what is drawn solid behind it. */
+TEST_WITH(ghosts_have_no_depth, set_up, stand_tear_down)
+{
+    struct view view;
+    view_default(&stand.toy->scene, WIDTH, HEIGHT, &view);
+    for (int i = 0; i < (int)stand.toy->scene.asset_count; i += 2)
+        asset_set_add(&view.visibility.ghosts, i);
+    check_view(&view);
+}
+
 /* With a still camera, only the colours of a frame are computed again. Such frames must have the same depth grid as the first
    one. */
 TEST_WITH(recoloured_frames_keep_the_grid, set_up, stand_tear_down)

@@ -230,6 +230,17 @@ CASE(signed_frames_and_followers_get_no_depth)
     f->session->following.leader = NULL;
 }
 
+CASE(tiles_of_a_wall_get_no_depth)
+{
+    struct frame_request request;
+    say(f, DEPTH_HELLO);
+    f->session->tile.place.display = 1;
+    assert_false(session_gets_depth(f->session));
+    f->session->tile.place.display = 0;
+    assert_true(session_gets_depth(f->session));
+    assert_true(ask(f, &request) && request.depth);
+}
+
 CASE(a_plant_may_give_no_depth_away)
 {
     struct frame_request request;
