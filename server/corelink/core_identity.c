@@ -3,6 +3,7 @@
    their messages would mean different tags. */
 #include "corelink/core_identity.h"
 
+#include <stddef.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -11,6 +12,28 @@
 #include "base/text/text.h"
 
 /* --- hashes of the plant's files ---------------------------------------------------------------------------------------------- */
+
+/* The kinds of files in the order of enum core_file's bits. key: in messages and on engineers' pages; name: in the log; at: offset of
+   the hash in struct core_files. */
+static const struct {
+    const char *key, *name;
+    size_t at;
+} kinds[] = {
+    { "plant", "plant file", offsetof(struct core_files, plant) },
+    { "tags", "tag list", offsetof(struct core_files, tags) },
+    { "models", "models", offsetof(struct core_files, models) },
+};
+enum { KINDS = sizeof(kinds) / sizeof(kinds[0]) };
+
+static char *hash_of(struct core_files *files, int kind)
+{
+    return (char *)files + kinds[kind].at;
+}
+
+static const char *const_hash_of(const struct core_files *files, int kind)
+{
+    return (const char *)files + kinds[kind].at;
+}
 
 struct core_files core_files_of(const struct plant *plant, uint64_t models_hash)
 {
@@ -23,37 +46,54 @@ struct core_files core_files_of(const struct plant *plant, uint64_t models_hash)
 
 json_t *core_files_json(const struct core_files *files)
 {
-    return json_pack("{s:s,s:s,s:s}", "plant", files->plant, "tags", files->tags, "models", files->models);
+    json_t *object = json_object();
+    for (int i = 0; i < KINDS; i++)
+        json_object_set_new(object, kinds[i].key, json_string(const_hash_of(files, i)));
+    return object;
 }
 
-static bool read_hash(const json_t *files, const char *name, char out[17])
+static bool read_hash(const json_t *files, const char *name, char out[CORE_HASH_BYTES])
 {
     const char *text = json_member_text(files, name);
-    snprintf(out, 17, "%s", text ? text : "");
-    return text && strlen(text) == 16;
+    snprintf(out, CORE_HASH_BYTES, "%s", text ? text : "");
+    return text && strlen(text) == CORE_HASH_BYTES - 1;
 }
 
 bool core_files_read(const json_t *told, struct core_files *out)
 {
     const json_t *files = json_object_get(told, "files");
-    return read_hash(files, "plant", out->plant) && read_hash(files, "tags", out->tags) && read_hash(files, "models", out->models);
+    bool good = true;
+    for (int i = 0; i < KINDS; i++)
+        good = read_hash(files, kinds[i].key, hash_of(out, i)) && good;
+    return good;
 }
 
 unsigned core_files_differing(const struct core_files *own, const struct core_files *other)
 {
-    return (strcmp(own->plant, other->plant) != 0 ? CORE_PLANT_FILE : 0) | (strcmp(own->tags, other->tags) != 0 ? CORE_TAG_LIST : 0) |
-           (strcmp(own->models, other->models) != 0 ? CORE_MODELS : 0);
+    unsigned differing = 0;
+    for (int i = 0; i < KINDS; i++)
+        if (strcmp(const_hash_of(own, i), const_hash_of(other, i)) != 0)
+            differing |= 1u << i;
+    return differing;
 }
 
 char *core_files_text(unsigned files)
 {
-    static const char *const names[] = { "plant file", "tag list", "models" };
     struct text text = { 0 };
     text_add(&text, "%s", "");
-    for (unsigned i = 0; i < sizeof(names) / sizeof(names[0]); i++)
+    for (int i = 0; i < KINDS; i++)
         if (files & 1u << i)
-            text_add(&text, "%s%s", text.length ? ", " : "", names[i]);
+            text_add(&text, "%s%s", text.length ? ", " : "", kinds[i].name);
     return text.at;
+}
+
+json_t *core_files_keys(unsigned files)
+{
+    json_t *keys = json_array();
+    for (int i = 0; i < KINDS; i++)
+        if (files & 1u << i)
+            json_array_append_new(keys, json_string(kinds[i].key));
+    return keys;
 }
 
 /* --- introduction ------------------------------------------------------------------------------------------------------------- */

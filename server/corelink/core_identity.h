@@ -11,12 +11,14 @@
 #define CORE_SUBPROTOCOL "plantcast.core.v1"
 #define CORE_PATH "/core"
 
-/* Files that must be equal on all nodes of a plant. The values are bits of a mask of files that differ. */
+/* Files that must be equal on all nodes of a plant. The values are bits of a mask of files that differ. The table in
+   core_identity.c names these files in messages and in the log. */
 enum core_file { CORE_PLANT_FILE = 1, CORE_TAG_LIST = 2, CORE_MODELS = 4 };
+enum { CORE_HASH_BYTES = 17 /* 16 hexadecimal digits and the terminator */ };
 
 struct core_files {
     /* hashes in hexadecimal: plant: of the plant file; tags: of the tag list; models: of all model files together */
-    char plant[17], tags[17], models[17];
+    char plant[CORE_HASH_BYTES], tags[CORE_HASH_BYTES], models[CORE_HASH_BYTES];
 };
 
 struct core_identity {
@@ -35,6 +37,8 @@ bool core_files_read(const json_t *told, struct core_files *out);
 unsigned core_files_differing(const struct core_files *own, const struct core_files *other);
 /* Returns the names of the files in the mask, such as "tag list, models"; free with mem_free(). */
 char *core_files_text(unsigned files);
+/* Returns the JSON array of the keys of the files in the mask, such as ["tags","models"]; the caller owns it. */
+json_t *core_files_keys(unsigned files);
 
 /* Returns the identity message as JSON; the caller owns it. type: "core" or "renderer". */
 json_t *core_identity_message(const char *type, const struct core_identity *own);

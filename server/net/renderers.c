@@ -147,14 +147,10 @@ static bool takes_over(const struct renderer_peer *renderer)
 /* Describes the standby for engineers' pages (`standby` in the message `status`). NULL: this core leads no pair. */
 static json_t *describe_standby(const struct server_context *server)
 {
-    static const char *const names[] = { "plant", "tags", "models" };
     const struct renderer_peer *standby = find_witness(server);
     if (!server->params.keeper || !core_end_leads(server))
         return NULL;
-    json_t *files = json_array(), *text = json_pack("{s:b,s:o}", "connected", standby != NULL, "files", files);
-    for (unsigned i = 0; standby && i < sizeof(names) / sizeof(names[0]); i++)
-        if (standby->differing & 1u << i)
-            json_array_append_new(files, json_string(names[i]));
+    json_t *text = json_pack("{s:b,s:o}", "connected", standby != NULL, "files", core_files_keys(standby ? standby->differing : 0));
     if (!standby)
         return text;
     json_object_set_new(text, "node", json_string(standby->name));
