@@ -64,7 +64,9 @@ json_t *folder_report(struct log *log, const char *folder, uint64_t key);
 /* An asset's entry in the manifest. */
 struct folder_entry {
     const char *id;
-    uint64_t key, recipe; /* recipe: hash of all inputs of the asset except its sensors (plant/recipe.h) */
+    /* recipe: hash of all inputs of the asset except its sensors (plant/recipe.h); model: hash of the model file, of all files that it
+     * refers to, and of panoramas and fitted readings */
+    uint64_t key, recipe, model;
     uint64_t geometry_key, distances_key;
     const char *missing;     /* reason why the asset has no prepared file; NULL: it has one */
     const double *placement; /* matrix of 16 numbers, column-major: transform from the asset frame to the plant frame */

@@ -544,10 +544,29 @@ static void name_left_out(const struct prepare *prepare, size_t index, struct fo
     entry->left_out_count = first == index ? model->left_out_textures : 0;
 }
 
+/* Returns the hash of the other files that the pictures depend on: panoramas, and the readings to which interpolations are fitted;
+   0: the plant file names none. An unreadable file counts as an empty one: the code that uses the file reports the error. */
+static uint64_t hash_named_files(const struct plant *plant)
+{
+    uint64_t *hashes = mem_array(plant->group_count + plant->display.environment_count + 1, sizeof(*hashes)), hash = 0;
+    size_t count = 0;
+    for (size_t g = 0; g < plant->group_count; g++)
+        if (plant->groups[g].gp.fit && !plant_model_hash(plant->groups[g].gp.fit, &hashes[count++]))
+            hashes[count - 1] = 0;
+    for (size_t e = 0; e < plant->display.environment_count; e++)
+        if (!plant_model_hash(plant->display.environments[e].path, &hashes[count++]))
+            hashes[count - 1] = 0;
+    if (count)
+        hash = XXH3_64bits(hashes, count * sizeof(*hashes));
+    mem_free(hashes);
+    return hash;
+}
+
 static void write_manifest(struct prepare_run *run)
 {
     struct prepare *prepare = run->prepare;
     struct folder_entry *entries = mem_array(prepare->asset_count, sizeof(*entries));
+    uint64_t named = hash_named_files(prepare->plant);
     /* an array for the tags of all assets together: one element per tag suffices, because a tag is a sensor of at most one
        asset */
     const char **tags = mem_array(prepare->plant->tag_count, sizeof(*tags)), **next = tags;
@@ -560,6 +579,7 @@ static void write_manifest(struct prepare_run *run)
                                             .geometry_key = asset->geometry_key,
                                             .distances_key = asset->distances_key,
                                             .recipe = plant_recipe(asset->plant, prepare->models.at[asset->model].file_hash),
+                                            .model = prepare->models.at[asset->model].hash ^ named,
                                             .placement = asset->plant->placement,
                                             .missing = asset->missing,
                                             .tags = next,

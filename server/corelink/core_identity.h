@@ -17,7 +17,8 @@ enum core_file { CORE_PLANT_FILE = 1, CORE_TAG_LIST = 2, CORE_MODELS = 4 };
 enum { CORE_HASH_BYTES = 17 /* 16 hexadecimal digits and the terminator */ };
 
 struct core_files {
-    /* hashes in hexadecimal: plant: of the plant file; tags: of the tag list; models: of all model files together */
+    /* hashes in hexadecimal: plant: of the plant file; tags: of the tag list; models: of all models together, with
+       all other files that affect the pictures (scene.models_hash) */
     char plant[CORE_HASH_BYTES], tags[CORE_HASH_BYTES], models[CORE_HASH_BYTES];
 };
 

@@ -38,7 +38,7 @@ static bool file_name_good(const char *file)
 static bool read_entry(struct log *log, struct manifest *manifest, size_t index, const json_t *item)
 {
     const char *id = json_string_value(json_object_get(item, "id")), *file = json_string_value(json_object_get(item, "file"));
-    const char *recipe = json_string_value(json_object_get(item, "recipe"));
+    const char *recipe = json_string_value(json_object_get(item, "recipe")), *model = json_string_value(json_object_get(item, "model"));
     if (!id || !file_name_good(file) || !recipe) {
         log_err(log, "%s: damaged list of prepared files: asset number %zu has no id, file or recipe; run plantcast-prep again",
                 manifest->path, index);
@@ -51,7 +51,8 @@ static bool read_entry(struct log *log, struct manifest *manifest, size_t index,
                                       .file = mem_strdup(file),
                                       .surface = file_name_good(surface) ? mem_strdup(surface) : NULL,
                                       .missing = missing ? mem_strdup(missing) : NULL,
-                                      .recipe = strtoull(recipe, NULL, 16) };
+                                      .recipe = strtoull(recipe, NULL, 16),
+                                      .model = model ? strtoull(model, NULL, 16) : 0 };
     entry->resolved_levels = (uint64_t)json_integer_value(json_object_get(item, "resolved_levels"));
     const json_t *left_out = json_object_get(item, "left_out");
     entry->left_out = mem_array(json_array_size(left_out) + 1, sizeof(*entry->left_out));

@@ -37,7 +37,9 @@ struct scene_asset {
 struct scene {
     const struct plant *plant;
     char *folder;               /* folder of the prepared files; NULL: the scene was made in memory */
-    uint64_t models_hash;       /* hash of the model files of all assets; nodes with equal models have equal hashes */
+    /* hash of the model files of all assets, with all files that affect the pictures, when they were prepared. Nodes that show
+       the same models have equal hashes */
+    uint64_t models_hash;
     struct scene_asset *assets; /* assets of the plant, by index in plant->assets */
     size_t asset_count;
     double bounds_min_m[3], bounds_max_m[3]; /* bounding box of the main part (scene/main_part.h), in the plant frame */

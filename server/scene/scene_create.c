@@ -279,8 +279,14 @@ static void open_files(struct file_uses *uses)
     workers_destroy(&workers);
 }
 
+/* Hashes of the assets' models; 0: the asset is missing. */
+struct model_hashes {
+    uint64_t *files; /* by asset: hash of the model file alone, which the recipe contains */
+    uint64_t *shown; /* by asset: hash of the model file and of the files that it refers to, as far as the manifest states it */
+};
+
 /* Adds the asset's file to the list, unless the asset is missing. Logs and returns false if the file does not match the plant. */
-static bool find_file(struct file_uses *uses, const struct manifest *manifest, uint64_t *hashes, int index)
+static bool find_file(struct file_uses *uses, const struct manifest *manifest, struct model_hashes *hashes, int index)
 {
     struct log *log = uses->log;
     struct scene *scene = uses->scene;
@@ -293,8 +299,9 @@ static bool find_file(struct file_uses *uses, const struct manifest *manifest, u
     }
     if (entry->missing)
         return create_missing(log, asset, entry);
-    if (!recipe_fits(log, scene->plant, hashes, index, entry))
+    if (!recipe_fits(log, scene->plant, hashes->files, index, entry))
         return false;
+    hashes->shown[index] = entry->model ? entry->model : hashes->files[index];
     uses->at[uses->count++] = (struct file_use){ entry->file, index, entry->resolved_levels };
     return true;
 }
@@ -317,10 +324,11 @@ static bool bound_missing(struct scene *scene)
 static bool create_assets(struct log *log, struct scene *scene, const struct manifest *manifest)
 {
     struct file_uses uses = { .log = log, .scene = scene, .at = mem_array(scene->asset_count, sizeof(*uses.at)) };
-    uint64_t *hashes = mem_array(scene->asset_count, sizeof(*hashes));
+    struct model_hashes hashes = { mem_array(scene->asset_count, sizeof(*hashes.files)),
+                                   mem_array(scene->asset_count, sizeof(*hashes.shown)) };
     bool good = true;
     for (size_t i = 0; i < scene->asset_count; i++)
-        good = find_file(&uses, manifest, hashes, (int)i) && good;
+        good = find_file(&uses, manifest, &hashes, (int)i) && good;
     open_files(&uses);
     qsort(uses.at, uses.count, sizeof(*uses.at), compare_assets);
     for (size_t i = 0; i < uses.count; i++) {
@@ -333,8 +341,9 @@ static bool create_assets(struct log *log, struct scene *scene, const struct man
         grow_box(scene->bounds_min_m, scene->bounds_max_m, asset->bounds_min_m);
         grow_box(scene->bounds_min_m, scene->bounds_max_m, asset->bounds_max_m);
     }
-    scene->models_hash = XXH3_64bits(hashes, scene->asset_count * sizeof(*hashes));
-    mem_free(hashes);
+    scene->models_hash = XXH3_64bits(hashes.shown, scene->asset_count * sizeof(*hashes.shown));
+    mem_free(hashes.files);
+    mem_free(hashes.shown);
     mem_free(uses.at);
     return good;
 }

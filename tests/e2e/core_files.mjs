@@ -186,6 +186,29 @@ test('a standby with another plant file or other models says so, and replaces ne
     await learns(core, isSame);
 });
 
+test('a standby with another buffer beside its model says so', options, async () => {
+    const core = await two.leader(), other = two.other(core), bin = (one) => join(dirname(one.file), 'box.bin');
+    const model = JSON.parse(readFileSync(join(dirname(core.file), 'box.gltf'))), [buffer] = model.buffers;
+    const bytes = Buffer.from(buffer.uri.replace(/^.*,/, ''), 'base64');
+    buffer.uri = 'box.bin';
+    for (const one of [other, core]) {
+        writeFileSync(bin(one), bytes);
+        writeFileSync(join(dirname(one.file), 'box.gltf'), JSON.stringify(model));
+        one.program.said = '';
+        reload(one);
+        await one.program.line(/reload: configuration/);
+    }
+    await learns(core, isSame);
+    core.program.said = '';
+    writeFileSync(bin(other), Buffer.concat([bytes, Buffer.alloc(4)])); // a model may leave bytes of its buffer unused
+    reload(other);
+    await core.program.line(/standby \w+: its models differ from this core's/);
+    await learns(core, ({ files: differing }) => differing.join() === 'models');
+    writeFileSync(bin(other), bytes);
+    reload(other);
+    await learns(core, isSame);
+});
+
 test('a saved tag list reaches a renderer', { skip: notBuilt(), timeout: 240000 }, async () => {
     const nodes = await Nodes.create({ slowDevice: true });
     try {

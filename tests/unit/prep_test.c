@@ -296,6 +296,49 @@ CASE(distances_are_printed)
     prep_case_expect(s, "distances $PLANT --asset B", 2);
 }
 
+static char *model_of(struct prep_case *s)
+{
+    struct text *text = test_text();
+    prep_case_expect(s, "$PLANT", 0);
+    prep_case_read(s, "plant.prepared/manifest.json", text);
+    return test_printf("%s", json_string_value(json_object_get(asset_of(prep_case_json(text), 0), "model")));
+}
+
+/* The manifest's hash of a model changes with each file that the pictures depend on: buffer, texture, panorama. */
+CASE(the_hash_of_a_model_covers_the_files_that_it_refers_to)
+{
+    static const char gltf[] =
+        "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],"
+        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],\"images\":[{\"uri\":\"a.png\"}],"
+        "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\"min\":[0,0,0],\"max\":[1,1,0]}],"
+        "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],\"buffers\":[{\"byteLength\":36,\"uri\":\"a.bin\"}]}";
+    static const char plant[] = "plant: { name: Parts }\nassets: [{ id: A, model: model.gltf }]\n"
+                                "groups: [{ id: temperature, unit: K, min: 0, max: 1 }]\ntags: tags.csv\n";
+    static const char hdr[] = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n\x80\x40\x20\x84\x80\x80\x80\x80";
+    float corners[9] = { 0, 0, 0, 1, 0, 0, 0.5f, 1, 0 };
+    prep_case_plant(s, plant);
+    prep_case_tags(s, "");
+    temp_write(s->folder, "model.gltf", gltf, sizeof(gltf) - 1);
+    temp_write(s->folder, "a.bin", corners, sizeof(corners));
+    const char *plain = model_of(s), *before = plain;
+    corners[6] = 0.25f;
+    temp_write(s->folder, "a.bin", corners, sizeof(corners));
+    const char *after = model_of(s);
+    assert_string_not_equal(after, before);
+    before = after;
+    temp_write(s->folder, "a.png", "no picture", 10);
+    assert_string_not_equal(after = model_of(s), before);
+    before = after;
+    temp_write(s->folder, "sky1.hdr", hdr, sizeof(hdr) - 1);
+    prep_case_plant(s, test_printf("%senvironment: sky1.hdr\n", plant));
+    assert_string_not_equal(after = model_of(s), before);
+    assert_int_equal(remove(temp_path(s->folder, "a.png")), 0);
+    corners[6] = 0.5f;
+    temp_write(s->folder, "a.bin", corners, sizeof(corners));
+    prep_case_plant(s, plant);
+    assert_string_equal(model_of(s), plain);
+}
+
 /* Textures are read: PNG by plantcast-prep itself, other formats by a module in a package of its own, which may be missing. */
 CASE(textures_are_read)
 {

@@ -79,17 +79,22 @@ static void write_manifest(const struct scene_fixture *f, const char *text)
     temp_write_text(f->prepared, "manifest.json", text);
 }
 
-/* Writes a manifest that lists all assets in reverse order, all with the same file. */
-static void write_good_manifest(const struct scene_fixture *f)
+/* Writes a manifest that lists all assets in reverse order, all with the same file. more: further members of each asset. */
+static void write_manifest_with(const struct scene_fixture *f, const char *more)
 {
     struct text *text = test_text();
     uint64_t model;
     assert_true(plant_model_hash(f->plant->assets[0].model, &model));
     text_add(text, "{\"format\": 2, \"assets\": [");
     for (size_t i = f->plant->asset_count; i-- > 0;)
-        text_add(text, "{\"id\": \"%s\", \"file\": \"1.asset\", \"recipe\": \"%016" PRIx64 "\"}%s", f->plant->assets[i].id,
-                 plant_recipe(&f->plant->assets[i], model), i > 0 ? "," : "]}");
+        text_add(text, "{\"id\": \"%s\", \"file\": \"1.asset\", \"recipe\": \"%016" PRIx64 "\"%s}%s", f->plant->assets[i].id,
+                 plant_recipe(&f->plant->assets[i], model), more, i > 0 ? "," : "]}");
     write_manifest(f, text->at);
+}
+
+static void write_good_manifest(const struct scene_fixture *f)
+{
+    write_manifest_with(f, "");
 }
 
 static struct plant *load(const struct scene_fixture *f, const char *more)
@@ -269,6 +274,27 @@ CASE(what_was_not_prepared_is_refused)
     scene_destroy(&scene);
     temp_write_text(f->folder, "m.glb", "glTG");
     assert_refused(f, "m.glb, or the asset's 'nodes'");
+}
+
+static uint64_t models_hash(const struct scene_fixture *f)
+{
+    struct scene *scene = scene_create(f->log, f->plant, f->prepared);
+    assert_non_null(scene);
+    uint64_t hash = scene->models_hash;
+    scene_destroy(&scene);
+    return hash;
+}
+
+/* The models' hash contains what the manifest says about buffers and textures. Without that it contains the model files alone, and a
+   model without such files has the same hash either way. */
+CASE(the_hash_of_the_models_covers_the_files_that_they_refer_to)
+{
+    uint64_t model, alone = models_hash(f);
+    assert_true(plant_model_hash(f->plant->assets[0].model, &model));
+    write_manifest_with(f, test_printf(", \"model\": \"%016" PRIx64 "\"", model));
+    assert_true(models_hash(f) == alone);
+    write_manifest_with(f, test_printf(", \"model\": \"%016" PRIx64 "\"", model + 1));
+    assert_true(models_hash(f) != alone);
 }
 
 /* Writes a manifest in which one asset is missing. All assets of the plant have the same model. */
