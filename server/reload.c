@@ -43,10 +43,8 @@ struct reload {
     struct supervision *supervision;
     struct plant_import *import;   /* importer of plants; NULL: import is off */
     int64_t begun_ns;              /* monotonic time when the reload that is running began */
-    /* value that the member `follows` below had when the running reload began: the connection that must end first */
-    uint64_t following;
-    /* value that the member `expects` below had when the running reload began: the hash that the configuration must have */
-    char expected[17];
+    uint64_t following;            /* connection to the core that must end before the running reload activates the plant; 0: none */
+    char expected[17];             /* hash that the configuration must have after the running reload; empty: any */
     char by[TOKEN_NAME_BYTES];     /* user who requested the running reload */
     const struct tag_save *saving; /* tag list that the running reload saves; NULL: none */
     const char *kept;              /* path under which the previous version of the tag list is kept */
@@ -64,11 +62,12 @@ struct reload {
     bool leads, ends; /* orders for that thread: take the lead; end the lead; protected by leader.lock */
     struct thread thread;
     /* --- below: protected by thread.lock */
-    bool asked, imports;
-    /* number of the connection to this daemon's core. The core ends that connection once it has loaded the plant too, and only
-       then the reload continues; 0: the reload does not wait for the core */
-    uint64_t follows;
-    char expects[17];           /* hash that the configuration must have after the reload (plant file and tag list); empty: any */
+    bool asked, imports; /* asked: a user or a signal requested a reload */
+    struct follow_order {
+        bool given; /* true: the core loads or has loaded its plant, so this node loads its own (reload_follow()) */
+        uint64_t session;
+        char expects[17], loads[17]; /* as in struct core_follow; empty: any, or not known */
+    } follow;
     char who[TOKEN_NAME_BYTES]; /* user who requested the next reload */
     struct tag_save *save;      /* tag list that the next reload saves; NULL: none */
     struct core_match {
@@ -287,10 +286,23 @@ static int lock_folder(const struct reload *reload, char **why)
     return lock;
 }
 
+struct announcement {
+    struct net *net;
+    char configuration[17]; /* hash of the plant file and tag list that this core loads */
+};
+
 /* Tells the renderers that a reload begins. Runs in the event loop. */
 static void announce(void *arg)
 {
-    net_announce_reload(arg);
+    struct announcement *announcement = arg;
+    net_announce_reload(announcement->net, announcement->configuration);
+}
+
+static void announce_reload(struct reload *reload)
+{
+    struct announcement announcement = { .net = reload->net };
+    plant_hash_on_disk((*reload->runtime)->plant, announcement.configuration);
+    net_call(reload->net, announce, &announcement);
 }
 
 /* Returns whether the running reload must wait, because this renderer's core has not yet switched to its new plant. */
@@ -326,7 +338,7 @@ static bool reload_now(struct reload *reload)
     struct plant_diff diff = { 0 };
     int64_t begun_ns = clock_mono_ns();
     if (reload->context->params->role == SERVER_CORE)
-        net_call(reload->net, announce, reload->net);
+        announce_reload(reload);
     struct plant_runtime *before = *reload->runtime, *after = plant_runtime_read(reload->context, &diag);
     const char *why = after         ? plant_needs_restart(before->plant, after->plant)
                       : diag.errors ? NULL
@@ -366,6 +378,21 @@ static bool reload_settled(struct reload *reload)
     mem_free(why);
     mem_free(folder);
     return good;
+}
+
+/* Loads the plant because the core loads it, unless this node lacks the files that the core loads. */
+static void follow_now(struct reload *reload, const struct follow_order *order)
+{
+    char own[17];
+    plant_hash_on_disk((*reload->runtime)->plant, own);
+    if (order->loads[0] && strcmp(order->loads, own) != 0) {
+        log_info(reload->context->log,
+                 "reload: the core loads configuration %s, but the files of this node have %s: this node continues with its present "
+                 "configuration until the core has changed",
+                 order->loads, own);
+        return;
+    }
+    reload_settled(reload);
 }
 
 /* --- saving a tag list ----------------------------------------------------------------------------------------------------- */
@@ -732,7 +759,7 @@ static void *run_leader(void *arg)
 /* Waits until the thread has something to do. Call with the thread's lock. */
 static void wait_for_work(struct reload *reload)
 {
-    while (!reload->asked && !reload->imports && !reload->save && !reload->agreed[0] && !reload->thread.stopping)
+    while (!reload->asked && !reload->follow.given && !reload->imports && !reload->save && !reload->agreed[0] && !reload->thread.stopping)
         if (!reload->match.configuration[0])
             pthread_cond_wait(&reload->thread.wake, &reload->thread.lock);
         else if (clock_mono_ns() < reload->match.due_ns)
@@ -770,7 +797,7 @@ static void carry_out(struct reload *reload, struct core_match *match)
 static void *reload_main(void *arg)
 {
     struct reload *reload = arg;
-    char who[TOKEN_NAME_BYTES], expects[sizeof(reload->expects)];
+    char who[TOKEN_NAME_BYTES];
     for (;;) {
         pthread_mutex_lock(&reload->thread.lock);
         wait_for_work(reload);
@@ -781,10 +808,9 @@ static void *reload_main(void *arg)
         bool stopping = reload->thread.stopping, asked = reload->asked;
         struct tag_save *save = reload->save;
         struct import_order order;
-        uint64_t follows = reload->follows;
+        struct follow_order follow = reload->follow;
         reload->asked = reload->imports = false;
-        reload->follows = 0;
-        snprintf(expects, sizeof(expects), "%s", reload->expects);
+        reload->follow = (struct follow_order){ .given = false };
         reload->save = NULL;
         snprintf(who, sizeof(who), "%s", reload->who);
         pthread_mutex_unlock(&reload->thread.lock);
@@ -802,10 +828,14 @@ static void *reload_main(void *arg)
         snprintf(reload->by, sizeof(reload->by), "%s", who);
         if (reload->import && plant_import_next(reload->import, &order))
             import_now(reload, &order);
-        reload->following = follows;
-        memcpy(reload->expected, expects, sizeof(expects));
-        if (asked)
+        reload->following = follow.session;
+        if (asked) {
             reload_settled(reload);
+        } else if (follow.given) {
+            snprintf(reload->by, sizeof(reload->by), "the core");
+            memcpy(reload->expected, follow.expects, sizeof(follow.expects));
+            follow_now(reload, &follow);
+        }
         reload->following = 0;
         reload->expected[0] = 0;
     }
@@ -847,27 +877,24 @@ void reload_destroy(struct reload **pointer)
     *pointer = NULL;
 }
 
-static void ask(struct reload *reload, const char *who, const char *expects)
+void reload_ask(struct reload *reload, const char *who)
 {
     pthread_mutex_lock(&reload->thread.lock);
     reload->asked = true;
-    snprintf(reload->expects, sizeof(reload->expects), "%s", expects);
     snprintf(reload->who, sizeof(reload->who), "%s", who);
     pthread_cond_signal(&reload->thread.wake);
     pthread_mutex_unlock(&reload->thread.lock);
 }
 
-void reload_ask(struct reload *reload, const char *who)
+void reload_follow(struct reload *reload, const struct core_follow *follow)
 {
-    ask(reload, who, "");
-}
-
-void reload_follow(struct reload *reload, uint64_t session, const char *configuration)
-{
+    struct follow_order order = { .given = true, .session = follow->session };
+    snprintf(order.expects, sizeof(order.expects), "%s", follow->expects ? follow->expects : "");
+    snprintf(order.loads, sizeof(order.loads), "%s", follow->loads ? follow->loads : "");
     pthread_mutex_lock(&reload->thread.lock);
-    reload->follows = session;
+    reload->follow = order;
+    pthread_cond_signal(&reload->thread.wake);
     pthread_mutex_unlock(&reload->thread.lock);
-    ask(reload, "the core", configuration ? configuration : "");
 }
 
 void reload_match(struct reload *reload, const struct core_files *files, const char *configuration)

@@ -17,10 +17,11 @@ void reload_destroy(struct reload **reload);
 /* Requests a reload without waiting for it; if one is running, another follows. who: the requesting user, copied. Call from any thread. */
 void reload_ask(struct reload *reload, const char *who);
 /* On a renderer or a standby core, requests a reload because its core loads the plant. The new plant is activated once the core
-   has ended the connection `session` (core_link_session()), which it does to switch to its own new plant; if the core does not
-   switch, the new plant is dropped. session 0: the core has switched already. configuration: hash of the core's configuration;
-   a plant with another hash is dropped; NULL: not known. Does not wait. Call from any thread. */
-void reload_follow(struct reload *reload, uint64_t session, const char *configuration);
+   has ended the connection follow->session, which it does to switch to its own new plant; if the core does not switch, the new
+   plant is dropped. A plant without the hash follow->expects is dropped. If this node's files on disk are not the ones that the
+   core loads (follow->loads), nothing is loaded: once the core has switched, it refuses this node, and reload_match() gets the
+   files. Does not wait. Call from any thread. */
+void reload_follow(struct reload *reload, const struct core_follow *follow);
 /* On a renderer or a standby core that its core refused because of its configuration: makes this node's files equal to the
    core's. Loads the files again if they are equal on disk already; otherwise gets the core's tag list, and saves it like
    reload_save(). Tries again, after 5 s at first and 5 min at last, until this succeeds or the core accepts this node; a standby

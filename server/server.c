@@ -158,9 +158,9 @@ static void ask_reload(void *arg, const char *who)
     reload_ask(((struct server *)arg)->reload, who);
 }
 
-static void follow_reload(void *arg, uint64_t session, const char *configuration)
+static void follow_reload(void *arg, const struct core_follow *follow)
 {
-    reload_follow(((struct server *)arg)->reload, session, configuration);
+    reload_follow(((struct server *)arg)->reload, follow);
 }
 
 static void match_core(void *arg, const struct core_files *files, const char *configuration)

@@ -28,6 +28,14 @@ struct core_identity {
     struct core_files files;
 };
 
+/* An order to load the plant because the core loads or has loaded it. */
+struct core_follow {
+    /* number of the connection (core_link_session()) that the core ends once it uses its new plant; 0: it uses it already */
+    uint64_t session;
+    const char *expects; /* hash that this node's configuration must have afterwards; NULL: any */
+    const char *loads;   /* hash of the configuration that the core loads; NULL: not known */
+};
+
 /* Returns the hashes of a loaded plant. models_hash: scene.models_hash. */
 struct core_files core_files_of(const struct plant *plant, uint64_t models_hash);
 /* Returns the hashes as JSON; the caller owns it. */

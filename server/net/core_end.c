@@ -8,6 +8,7 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "base/text/hex.h"
+#include "base/text/json_text.h"
 #include "corelink/core_identity.h"
 
 static bool hand_on(void *arg, const struct session *session, const char *text)
@@ -55,10 +56,10 @@ static void take_lists(struct server_context *server, const json_t *lists)
     streams_on_alarms(server);
 }
 
-static void follow(const struct server_context *server, uint64_t session, const char *configuration)
+static void follow(const struct server_context *server, const struct core_follow *follow)
 {
     if (server->params.follow)
-        server->params.follow(server->params.reload_arg, session, configuration);
+        server->params.follow(server->params.reload_arg, follow);
 }
 
 /* Handles the core's refusal of this daemon because their configurations differ: makes this daemon get the core's tag list, or
@@ -107,17 +108,18 @@ static void take_introduction(struct server_context *server, const json_t *messa
     take_files(server, message);
     server->core.followed[0] = 0;
     if (server->core.reloads)
-        follow(server, 0, server->session_context.plant->files.hash);
+        follow(server, &(struct core_follow){ .expects = server->session_context.plant->files.hash });
     server->core.reloads = false;
 }
 
 /* Handles the core's message that it loads its plant. A renderer loads the plant at the same time. A standby core waits until
    the leading core uses its new plant: if that plant makes the leader fail, the standby takes over with the old plant. */
-static void take_reload(struct server_context *server)
+static void take_reload(struct server_context *server, const json_t *message)
 {
+    const char *loads = json_member_text(message, "configuration");
     server->core.reloads = server->params.is_core;
     if (!server->params.is_core)
-        follow(server, core_link_session(server->params.plant.core_link), NULL);
+        follow(server, &(struct core_follow){ .session = core_link_session(server->params.plant.core_link), .loads = loads });
 }
 
 static void take(struct server_context *server, const char *text)
@@ -127,7 +129,7 @@ static void take(struct server_context *server, const char *text)
     if (!strcmp(type, "core"))
         take_introduction(server, message);
     else if (!strcmp(type, "reloading"))
-        take_reload(server);
+        take_reload(server, message);
     else if (!strcmp(type, "refused"))
         take_refusal(server, message);
     else

@@ -59,7 +59,7 @@ struct net_params {
     void (*reload)(void *arg, const char *who);
     /* callback in the event loop that reloads the plant because this daemon's core reloads it, see reload_follow(). NULL: this daemon has
        no core */
-    void (*follow)(void *arg, uint64_t session, const char *configuration);
+    void (*follow)(void *arg, const struct core_follow *follow);
     /* callback in the event loop that gets the leading core's tag list, see reload_match(). NULL: this daemon has no core */
     void (*match)(void *arg, const struct core_files *files, const char *configuration);
     /* callback in the event loop that records that both cores have the tag list with this hash; set only with `keeper` */

@@ -51,9 +51,9 @@ void net_release_recording(struct net *net)
     net->server.params.plant.notifier = NULL;
 }
 
-void net_announce_reload(struct net *net)
+void net_announce_reload(struct net *net, const char *configuration)
 {
-    renderers_announce_reload(&net->server);
+    renderers_announce_reload(&net->server, configuration);
 }
 
 void net_release_plant(struct net *net)

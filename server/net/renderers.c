@@ -284,8 +284,9 @@ void renderers_on_change(struct server_context *server)
         lws_callback_on_writable(renderer->wsi);
 }
 
-void renderers_announce_reload(struct server_context *server)
+void renderers_announce_reload(struct server_context *server, const char *configuration)
 {
+    snprintf(server->core.loads, sizeof(server->core.loads), "%s", configuration);
     for (struct renderer_peer *renderer = server->core.renderers; renderer; renderer = renderer->next)
         renderer->reloads = true;
     renderers_on_change(server);
@@ -347,10 +348,10 @@ static bool has_all(const struct server_context *server, const struct renderer_p
     return is_standby(renderer) && ended_ns && renderer->told_ns >= ended_ns && !renderer->last_question;
 }
 
-static bool send_reloading(struct renderer_peer *renderer)
+static bool send_reloading(const struct server_context *server, struct renderer_peer *renderer)
 {
     renderer->reloads = false;
-    return send_message(renderer, json_pack("{s:s}", "type", "reloading"));
+    return send_message(renderer, json_pack("{s:s,s:s}", "type", "reloading", "configuration", server->core.loads));
 }
 
 static bool send_question(const struct server_context *server, struct renderer_peer *renderer, bool last)
@@ -540,7 +541,7 @@ static bool send_next(struct server_context *server, struct renderer_peer *rende
     else if (renderer->asks)
         good = send_question(server, renderer, false);
     else if (renderer->reloads)
-        good = send_reloading(renderer);
+        good = send_reloading(server, renderer);
     else if (waits)
         good = send_readings(server, renderer);
     else if (may_answer(server, renderer))

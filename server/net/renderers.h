@@ -20,10 +20,10 @@ void renderers_describe_standby(struct server_context *server);
 /* Returns the lease name of the standby that has confirmed to have all state; NULL: none has. A standby can confirm this only
    once nothing changes any more (life.lead_ended_ns) and all actions are answered. Valid until the event loop runs again. */
 const char *renderers_complete_standby(const struct server_context *server);
-/* Tells all renderers that this core begins to load the plant, so that they load their files at the same time. A standby
-   ignores the message and stays responsive: a leader that cannot reach the database needs the standby's promises not to take
-   the lead. */
-void renderers_announce_reload(struct server_context *server);
+/* Tells all renderers that this core begins to load the plant, so that they load their files at the same time. configuration: hash of
+   the plant file and tag list that this core loads. A standby ignores the message and stays responsive: a leader that cannot reach
+   the database needs the standby's promises not to take the lead. */
+void renderers_announce_reload(struct server_context *server, const char *configuration);
 /* Makes the key that this core's renderers sign view tokens with; all get the same key. */
 void renderers_make_key(struct server_context *server);
 /* Sends all renderers what changed. */

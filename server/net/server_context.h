@@ -91,6 +91,7 @@ struct server_context {
     struct {
         struct view_token_keys token_keys;      /* renderers only: keys that sign view tokens */
         char key[2 * VIEW_TOKEN_KEY_BYTES + 1]; /* cores only: view token key for the renderers, hexadecimal; "": none */
+        char loads[17];                         /* cores only: configuration (hash) that this core began to load last */
         char refused[400]; /* last refusal of a renderer that was logged, so that repetitions are not logged */
         bool listed;       /* renderers only: true: since the plant was loaded, the core has sent its lists (views, notes and so on) */
         /* configuration named in the core's last refusal of this daemon, which then loaded its files again to match it */

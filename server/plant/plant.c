@@ -24,10 +24,10 @@ static char *folder_of(const char *path)
 }
 
 /* Hashes the contents of plant file and tag list. The hash identifies the configuration: undoing a change restores the old hash. */
-static void hash_files(struct plant *plant)
+static void hash_files(struct plant_files *files)
 {
-    const char *const paths[] = { plant->files.path, plant->files.tags_path };
-    char *const hashes[] = { plant->files.plant_hash, plant->files.tags_hash };
+    const char *const paths[] = { files->path, files->tags_path };
+    char *const hashes[] = { files->plant_hash, files->tags_hash };
     XXH3_state_t *state = XXH3_createState();
     XXH3_64bits_reset(state);
     for (size_t i = 0; i < 2; i++) {
@@ -36,11 +36,18 @@ static void hash_files(struct plant *plant)
         XXH3_64bits_update(state, &count, sizeof(count));
         if (bytes)
             XXH3_64bits_update(state, bytes, count);
-        snprintf(hashes[i], sizeof(plant->files.tags_hash), "%016llx", bytes ? (unsigned long long)XXH3_64bits(bytes, count) : 0);
+        snprintf(hashes[i], sizeof(files->tags_hash), "%016llx", bytes ? (unsigned long long)XXH3_64bits(bytes, count) : 0);
         mem_free(bytes);
     }
-    snprintf(plant->files.hash, sizeof(plant->files.hash), "%016llx", (unsigned long long)XXH3_64bits_digest(state));
+    snprintf(files->hash, sizeof(files->hash), "%016llx", (unsigned long long)XXH3_64bits_digest(state));
     XXH3_freeState(state);
+}
+
+void plant_hash_on_disk(const struct plant *plant, char hash[17])
+{
+    struct plant_files now = plant->files;
+    hash_files(&now);
+    memcpy(hash, now.hash, sizeof(now.hash));
 }
 
 static int compare_ids(const void *pa, const void *pb, void *assets_ptr)
@@ -74,7 +81,7 @@ static struct plant *load(const char *path, bool keeps_orphans, bool without_mod
     }
     if (plant->files.tags_path && diag->errors == errors)
         plant_influence_check(plant, diag);
-    hash_files(plant);
+    hash_files(&plant->files);
     if (diag->errors != errors)
         plant_destroy(&plant);
     else

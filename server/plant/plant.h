@@ -440,6 +440,8 @@ struct plant {
 
 /* Loads a plant file and its tag list. Errors and warnings go to diag. Returns NULL if there was any error. */
 struct plant *plant_load(const char *path, struct diag *diag);
+/* Computes the hash that files.hash would have if the plant were loaded again now: of the plant file and tag list on disk. */
+void plant_hash_on_disk(const struct plant *plant, char hash[17]);
 /* Loads a plant like plant_load(), and prints errors and warnings to standard error. */
 struct plant *plant_load_or_print(const char *path);
 /* Loads a plant like plant_load_or_print(), but does not require the model files: for commands that need no models. */

@@ -221,6 +221,8 @@ test('a saved tag list reaches a renderer', { skip: notBuilt(), timeout: 240000 
         await save(core, 0.25);
         await renderer.program.line(TAKEN);
         await until('readings again', isThere);
+        await renderer.program.line(/reload: configuration \S+ replaced/);
+        assert.equal(renderer.program.said.match(/reload: configuration \S+ replaced/g).length, 1, 'the renderer loads once');
         assert.equal(list({ file }), list(nodes.plant));
         assert.deepEqual(await positionOf(renderer), [0.5, 0, 0.25]);
         appendFileSync(tagsOf({ file }), PADDING);
