@@ -48,6 +48,7 @@ struct reload {
     char by[TOKEN_NAME_BYTES];     /* user who requested the running reload */
     const struct tag_save *saving; /* tag list that the running reload saves; NULL: none */
     const char *kept;              /* path under which the previous version of the tag list is kept */
+    uint64_t answers;              /* number of the newest request that the running reload answers; 0: it answers none */
     char *failure;                 /* reason why the last reload that failed did so; NULL: none failed yet */
     char *unmatched;               /* last reported reason why this node has not got its core's files; NULL: none */
     _Atomic bool stops;            /* true: the daemon ends, so a transfer of a tag list must end */
@@ -63,6 +64,7 @@ struct reload {
     struct thread thread;
     /* --- below: protected by thread.lock */
     bool asked, imports; /* asked: a user or a signal requested a reload */
+    uint64_t requests;   /* number of reloads that users and signals have requested since the start */
     struct follow_order {
         bool given; /* true: the core loads or has loaded its plant, so this node loads its own (reload_follow()) */
         uint64_t session;
@@ -92,6 +94,7 @@ void reload_count(struct counters *counters, const char *hash, bool in_force)
 
 struct verdict {
     struct net *net;
+    uint64_t answers; /* number of the newest request that is answered; 0: none is */
     bool good;
     char *text;
     uint64_t client; /* id of the client that saved a tag list */
@@ -101,7 +104,8 @@ struct verdict {
 static void say(void *arg)
 {
     struct verdict *verdict = arg;
-    net_report_reload(verdict->net, verdict->good, verdict->text);
+    if (verdict->answers)
+        net_report_reload(verdict->net, verdict->answers, verdict->good, verdict->text);
     if (verdict->saved)
         net_report_save(verdict->net, verdict->client, verdict->saved);
 }
@@ -132,10 +136,11 @@ static void record(const struct reload *reload, bool good, const json_t *object)
     mem_free(what);
 }
 
-/* Reports the reload's result to all clients that requested it; takes ownership of `object`. */
+/* Reports the reload's result to the clients that requested it; takes ownership of `object`. A save, an import, and a reload because
+   of the core answer nobody else's request: such requests are carried out, and answered, afterwards. */
 static void answer(struct reload *reload, bool good, json_t *object)
 {
-    struct verdict verdict = { reload->net, good, NULL, 0, NULL };
+    struct verdict verdict = { .net = reload->net, .answers = reload->answers, .good = good };
     json_object_set_new(object, "by", json_string(reload->by));
     struct settling_ticket ticket = audit_begin(reload->context->audit);
     record(reload, good, object);
@@ -149,7 +154,7 @@ static void answer(struct reload *reload, bool good, json_t *object)
     }
     char *text = json_text(object, 0);
     verdict.text = mem_printf("%s\n", text);
-    supervision_reloaded(reload->supervision, good, reload->begun_ns, text);
+    supervision_reloaded(reload->supervision, good, reload->begun_ns, reload->answers ? text : NULL);
     net_call(reload->net, say, &verdict);
     mem_free(verdict.text);
     mem_free(verdict.saved);
@@ -806,6 +811,7 @@ static void *reload_main(void *arg)
         memcpy(agreed, reload->agreed, sizeof(agreed));
         reload->agreed[0] = 0;
         bool stopping = reload->thread.stopping, asked = reload->asked;
+        uint64_t requests = reload->requests;
         struct tag_save *save = reload->save;
         struct import_order order;
         struct follow_order follow = reload->follow;
@@ -830,7 +836,9 @@ static void *reload_main(void *arg)
             import_now(reload, &order);
         reload->following = follow.session;
         if (asked) {
+            reload->answers = requests;
             reload_settled(reload);
+            reload->answers = 0;
         } else if (follow.given) {
             snprintf(reload->by, sizeof(reload->by), "the core");
             memcpy(reload->expected, follow.expects, sizeof(follow.expects));
@@ -877,13 +885,15 @@ void reload_destroy(struct reload **pointer)
     *pointer = NULL;
 }
 
-void reload_ask(struct reload *reload, const char *who)
+uint64_t reload_ask(struct reload *reload, const char *who)
 {
     pthread_mutex_lock(&reload->thread.lock);
+    uint64_t number = ++reload->requests;
     reload->asked = true;
     snprintf(reload->who, sizeof(reload->who), "%s", who);
     pthread_cond_signal(&reload->thread.wake);
     pthread_mutex_unlock(&reload->thread.lock);
+    return number;
 }
 
 void reload_follow(struct reload *reload, const struct core_follow *follow)

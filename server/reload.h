@@ -14,8 +14,9 @@ struct reload *reload_create(const struct plant_runtime_context *context, struct
                              struct supervision *supervision, struct plant_import *import);
 /* Ends the threads; the event loop must have ended. Accepts a pointer to NULL; sets *reload to NULL. */
 void reload_destroy(struct reload **reload);
-/* Requests a reload without waiting for it; if one is running, another follows. who: the requesting user, copied. Call from any thread. */
-void reload_ask(struct reload *reload, const char *who);
+/* Requests a reload without waiting for it; if one is running, another follows. who: the requesting user, copied. Returns the number
+   of the request, by which net_report_reload() says that it is answered. Call from any thread. */
+uint64_t reload_ask(struct reload *reload, const char *who);
 /* On a renderer or a standby core, requests a reload because its core loads the plant. The new plant is activated once the core
    has ended the connection follow->session, which it does to switch to its own new plant; if the core does not switch, the new
    plant is dropped. A plant without the hash follow->expects is dropped. If this node's files on disk are not the ones that the

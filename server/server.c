@@ -153,9 +153,9 @@ static unsigned find_codecs(const struct server *server)
 }
 
 /* Requests a reload. Called in the event loop, which starts only after server->reload was created. */
-static void ask_reload(void *arg, const char *who)
+static uint64_t ask_reload(void *arg, const char *who)
 {
-    reload_ask(((struct server *)arg)->reload, who);
+    return reload_ask(((struct server *)arg)->reload, who);
 }
 
 static void follow_reload(void *arg, const struct core_follow *follow)

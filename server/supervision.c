@@ -132,7 +132,7 @@ void supervision_reloaded(struct supervision *supervision, bool good, int64_t be
     counter_set(supervision->counters.reload_good, good);
     if (good)
         counter_set(supervision->counters.reloaded_s, clock_utc_ns() / NS_PER_S);
-    if (!supervision->runtime)
+    if (!supervision->runtime || !json)
         return;
     char *path = mem_printf("%s/reload.json", supervision->runtime);
     char *text = mem_printf("{\"begun_ns\":%" PRId64 ",\"result\":%s}\n", begun_ns, json);

@@ -17,7 +17,8 @@ void supervision_starting(struct supervision *supervision, const char *what);
    the event loop (net_params.tick). */
 void supervision_tick(struct supervision *supervision, const struct net_status *status);
 /* Records the result of a reload in metrics, and in RUNTIME_DIRECTORY/reload.json for `plantcast reload`. begun_ns: monotonic
-   time when the reload began. json: the answer to POST /api/v1/reload. Call from any thread, one at a time. */
+   time when the reload began. json: the answer to POST /api/v1/reload; NULL: nobody requested this reload, so the file
+   is not written. Call from any thread, one at a time. */
 void supervision_reloaded(struct supervision *supervision, bool good, int64_t begun_ns, const char *json);
 /* Reports that the daemon is ending. Call only in the main thread. */
 void supervision_stopping(struct supervision *supervision);

@@ -54,8 +54,8 @@ bool net_take_plant(struct net *net, const struct plant_services *plant);
 /* Writes to `out` up to `most` distinct views that sessions will show after the switch to the next plant, so that they can be
    drawn in advance. Returns their number. next->render_service may be NULL. */
 size_t net_views(struct net *net, const struct plant_services *next, struct view *out, size_t most);
-/* Answers all HTTP requests for a reload with the reload's result. */
-void net_report_reload(struct net *net, bool good, const char *text);
+/* Answers the HTTP requests for a reload up to this number (net_params.reload) with the reload's result. */
+void net_report_reload(struct net *net, uint64_t number, bool good, const char *text);
 /* Sends a client the result (as text) of saving the client's tag list. */
 void net_report_save(struct net *net, uint64_t client, const char *text);
 

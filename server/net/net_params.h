@@ -55,8 +55,9 @@ struct net_params {
     /* callback in the event loop, set only with `keeper`: starts a thread that ends everything that only a leader may do. At
        its end, that thread calls net_on_lead_ended() */
     void (*end_leading)(void *arg);
-    /* callback in the event loop that reloads the plant for user `who`; NULL: the plant cannot be reloaded */
-    void (*reload)(void *arg, const char *who);
+    /* callback in the event loop that reloads the plant for user `who` and returns the number of the request (reload_ask()); NULL: the
+       plant cannot be reloaded */
+    uint64_t (*reload)(void *arg, const char *who);
     /* callback in the event loop that reloads the plant because this daemon's core reloads it, see reload_follow(). NULL: this daemon has
        no core */
     void (*follow)(void *arg, const struct core_follow *follow);

@@ -119,9 +119,9 @@ bool net_take_plant(struct net *net, const struct plant_services *plant)
     return good;
 }
 
-void net_report_reload(struct net *net, bool good, const char *text)
+void net_report_reload(struct net *net, uint64_t number, bool good, const char *text)
 {
-    http_on_reloaded(&net->server, good, text);
+    http_on_reloaded(&net->server, number, good, text);
 }
 
 void net_report_save(struct net *net, uint64_t client, const char *text)

@@ -239,8 +239,9 @@ void http_on_historical_snapshot(struct server_context *server, const struct his
 void http_on_history_answer(struct server_context *server, struct history_answer *piece);
 /* Answers browsers that the identity provider has sent back after a sign-in. */
 void http_on_sign_ins(struct server_context *server);
-/* Answers the HTTP requests that asked for a reload, once it is done. good: the new plant is loaded; text: the result as JSON. */
-void http_on_reloaded(struct server_context *server, bool good, const char *text);
+/* Answers the HTTP requests for a reload up to this number (reload_ask()), once it is done. good: the new plant is loaded; text: the
+   result as JSON. */
+void http_on_reloaded(struct server_context *server, uint64_t number, bool good, const char *text);
 /* Answers all HTTP requests that wait for something of the present plant, which is about to be destroyed. */
 void http_release_plant(struct server_context *server);
 /* Answers HTTP requests whose line of the audit trail has reached the disk or could not be written. */

@@ -274,6 +274,30 @@ test('while another program is at work in the plant\'s folder, a list is not sav
     engineer.close();
 });
 
+test('a save that is refused does not answer a reload that waits behind the save', options, async (t) => {
+    const engineer = await enter();
+    place(engineer, [{ tag: 'TI-9', asset: 'E-101', position: [0, 0.5, 0.3] }]);
+    await placed(engineer);
+    engineer.say({ type: 'save_tags', seq: ++seq });
+    const { hash } = await engineer.text('tags_diff');
+    let held;
+    t.after(() => held?.stdin.end());
+    // On a busy machine, this test may release the folder's lock later than the reload waits for it, so this tries again.
+    await until('a reload that is done', async () => {
+        held = spawn('flock', [plant.folder, 'sh', '-c', 'echo held; read line'], { stdio: ['pipe', 'pipe', 'ignore'] });
+        await once(held.stdout, 'data');
+        engineer.say({ type: 'save_tags', seq: ++seq, confirm: hash });
+        await probe(engineer);
+        const reload = fetch(`http://127.0.0.1:${plant.port}/api/v1/reload`, { method: 'POST' });
+        assert.equal((await engineer.text('tags_saved', 60000)).saved, false);
+        held.stdin.end();
+        const answer = await reload, { reloaded } = await answer.json();
+        assert.equal(reloaded, answer.status === 200);
+        return reloaded;
+    });
+    engineer.close();
+});
+
 const prove = (client, tag, expected, more = {}) => {
     client.say({ type: 'prove', seq: ++seq, tag, expected, tolerance: 0.5, ...more });
     return client.text('proved');

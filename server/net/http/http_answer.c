@@ -274,7 +274,7 @@ void http_on_tick(struct server_context *server, int64_t now_ns)
         if (now_ns < request->until_ns || request->pieces != PIECES_NONE || request->recorded)
             continue;
         request_forget(server, request);
-        request->reloads = false;
+        request->reload = 0;
         char *text = mem_printf("no answer within %d s (the first picture of a large plant takes longest); try again\n",
                                 (int)server->room.quotas->at[QUOTA_ANSWER_WAIT_S]);
         request_answered(request, request_answer_later(request, text));

@@ -41,7 +41,7 @@ struct http_exchange {
     bool last_piece;             /* true: `body` is the last piece of the answer */
     uint64_t client;             /* id by which request_find() finds the request while it waits */
     int64_t until_ns;            /* monotonic time at which the waiting request is answered with "not ready" */
-    bool reloads;                /* true: the request waits for a reload of the plant */
+    uint64_t reload;             /* number of the plant's reload for which the request waits (reload_ask()); 0: none */
     /* true: the requested action was carried out, but the answer waits until line `record` of the audit trail is on disk */
     bool recorded;
     struct settling_ticket record; /* line of the audit trail that records the request */
