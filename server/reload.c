@@ -17,6 +17,7 @@
 #include "base/files/file_writer.h"
 #include "base/mem.h"
 #include "base/text/json_text.h"
+#include "base/text/text.h"
 #include "base/thread.h"
 #include "corelink/core_tags.h"
 #include "import_job.h"
@@ -51,6 +52,8 @@ struct reload {
     uint64_t answers;              /* number of the newest request that the running reload answers; 0: it answers none */
     char *failure;                 /* reason why the last reload that failed did so; NULL: none failed yet */
     char *unmatched;               /* last reported reason why this node has not got its core's files; NULL: none */
+    bool matching;                 /* true: the running reload is an attempt to get the core's files, which record_match() records */
+    int failed_matches;            /* number of failed attempts to get the core's files since the last success */
     _Atomic bool stops;            /* true: the daemon ends, so a transfer of a tag list must end */
     struct refusal refusal;        /* reason why the running reload could not save the tag list; REFUSAL_NONE: it was saved */
     /* held while a reload replaces the runtime, and while this core becomes the leader (which polls devices), so that these
@@ -143,7 +146,8 @@ static void answer(struct reload *reload, bool good, json_t *object)
     struct verdict verdict = { .net = reload->net, .answers = reload->answers, .good = good };
     json_object_set_new(object, "by", json_string(reload->by));
     struct settling_ticket ticket = audit_begin(reload->context->audit);
-    record(reload, good, object);
+    if (!reload->matching)
+        record(reload, good, object);
     audit_end(reload->context->audit, &ticket);
     int error = audit_wait(reload->context->audit, &ticket);
     if (error)
@@ -549,10 +553,36 @@ static char *take_tags(struct reload *reload, const struct core_files *files, bo
     return why;
 }
 
+/* Returns whether this is the first failure to get the core's files, or has another cause than the last one. */
+static bool is_new_cause(const struct reload *reload, const char *why)
+{
+    return !reload->unmatched || !text_equal_but_numbers(why, reload->unmatched);
+}
+
+/* Records an attempt to get the core's files in the audit trail. Attempts are repeated for as long as they fail, so a failure is
+   recorded only if its cause is new. why: reason of the failure; NULL: this node now has the files. */
+static void record_match(struct reload *reload, const char *why)
+{
+    reload->failed_matches += why != NULL;
+    if (why && !is_new_cause(reload, why))
+        return;
+    const char *hash = (*reload->runtime)->plant->files.hash;
+    char *what = why ? mem_printf("the files of the leading core are not active: this node keeps configuration %s", hash)
+                 : reload->failed_matches
+                     ? mem_printf("the files of the leading core: configuration %s is active, after %d failed attempts", hash,
+                                  reload->failed_matches)
+                     : mem_printf("the files of the leading core: configuration %s is active", hash);
+    audit_say(reload->context->audit,
+              &(struct audit_entry){ .event = "reload", .result = why ? "failed" : "done", .who = reload->by, .what = what, .why = why });
+    mem_free(what);
+}
+
 /* Logs and reports why this node has not got its core's files; takes ownership of `why`. NULL: this node has them. */
 static void report_unmatched(struct reload *reload, char *why)
 {
-    if (why && (!reload->unmatched || strcmp(why, reload->unmatched) != 0))
+    if (!why)
+        reload->failed_matches = 0;
+    if (why && is_new_cause(reload, why))
         log_err(reload->context->log, "core: this node has not got its core's files: %s", why);
     pthread_mutex_lock(&reload->put_lock);
     struct core_link *link = (*reload->runtime)->services.core_link;
@@ -579,7 +609,11 @@ static bool match_now(struct reload *reload, const struct core_match *match)
     char *why = NULL;
     if (!follows_core(reload) || !strcmp(own->hash, match->configuration)) {
         /* this core leads by now, or has loaded the core's files meanwhile */
-    } else if (!has_hash(own->path, match->files.plant)) {
+        report_unmatched(reload, NULL);
+        return true;
+    }
+    reload->matching = true;
+    if (!has_hash(own->path, match->files.plant)) {
         why = mem_printf("the core has another plant file than %s on node %s: copy the core's plant file, tag list and models to that "
                          "machine, run plantcast-prep, and reload the plant there",
                          own->path, reload->context->params->node);
@@ -591,6 +625,12 @@ static bool match_now(struct reload *reload, const struct core_match *match)
             why = mem_printf("%s is equal to the core's, but cannot be activated: %s", own->tags_path, reload->failure);
         reload->expected[0] = 0;
     }
+    reload->matching = false;
+    if (is_stopping(reload)) { /* the daemon's end is no cause of a failure */
+        mem_free(why);
+        return true;
+    }
+    record_match(reload, why);
     report_unmatched(reload, why);
     return !again || !why;
 }

@@ -11,6 +11,7 @@
 #include "base/mem.h"
 #include "base/text/hex.h"
 #include "base/text/json_text.h"
+#include "base/text/text.h"
 #include "corelink/core_alarms.h"
 #include "corelink/core_identity.h"
 #include "corelink/core_readings.h"
@@ -742,11 +743,12 @@ static void take_files(struct server_context *server, struct renderer_peer *rend
 {
     if (!why || !renderer->differing || (renderer->behind && !strcmp(renderer->behind, why)))
         return;
+    char *files = core_files_text(renderer->differing);
+    if (!renderer->behind || !text_equal_but_numbers(renderer->behind, why))
+        log_err(server->params.log, "standby %s: has not got this core's %s: %s", renderer->name, files, why);
+    mem_free(files);
     mem_free(renderer->behind);
     renderer->behind = mem_strdup(why);
-    char *files = core_files_text(renderer->differing);
-    log_err(server->params.log, "standby %s: has not got this core's %s: %s", renderer->name, files, why);
-    mem_free(files);
     renderers_describe_standby(server);
 }
 

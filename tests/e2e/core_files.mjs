@@ -26,6 +26,9 @@ function copyPlant(file, folder) {
 
 const tagsOf = (core) => join(dirname(core.file), 'tags.csv');
 const list = (core) => readFileSync(tagsOf(core), 'utf8');
+// Returns the results of the attempts to get the leader's files that are in this core's audit trail.
+const attempts = (core) => readFileSync(core.trail, 'utf8').split('\n').slice(0, -1).map((line) => JSON.parse(line))
+    .filter(({ event, who }) => event === 'reload' && who === 'the core').map(({ result, what, why }) => ({ result, what, why }));
 const files = (core) => readdirSync(dirname(core.file)).sort();
 // Loads the core's files, prepared again, as an administrator would after copying them.
 function reload(core) {
@@ -38,6 +41,8 @@ before(async () => {
         for (const core of Object.values(made.cores)) {
             core.file = copyPlant(made.file, join(made.plant.folder, core.name, 'plant'));
             const folder = dirname(core.file);
+            core.trail = join(made.plant.folder, core.name, 'audit.log');
+            core.args = ['--audit', core.trail];
             core.before = ['sh', '-c', `mount --bind ${folder} ${folder} && exec "$@"`, 'sh']; // so that a test can make it read-only
         }
     });
@@ -134,6 +139,8 @@ test('a standby that cannot write says so, and gets the list once it can', optio
             return false;
         }
     });
+    const recorded = attempts(other).length;
+    other.program.said = '';
     await save(core.node, 0.35);
     await core.program.line(/standby \w+: has not got this core's tag list: \S+tags\.csv: .*Read-only file system/);
     const { files: differing, why } = await learns(core, (standby) => standby.why);
@@ -142,9 +149,17 @@ test('a standby that cannot write says so, and gets the list once it can', optio
     assert.equal(await core.node.metric('plantcast_core_standby_differing_files'), 1);
     assert.equal(list(other), before_);
     assert.deepEqual(files(other), names);
+    await until('a second attempt', () => other.program.said.match(/reload: refused/g)?.length > 1);
     remount('rw');
     await learns(core, isSame);
     assert.equal(list(other), list(core));
+    await until('the record of the success', () => attempts(other).length >= recorded + 2);
+    const [failed, done, ...more] = attempts(other).slice(recorded);
+    assert.equal(failed.result, 'failed');
+    assert.match(failed.why, /Read-only file system/);
+    assert.equal(done.result, 'done');
+    assert.match(done.what, /configuration \w{16} is active, after ([2-9]|\d\d) failed attempts$/);
+    assert.deepEqual(more, []);
 });
 
 test('a list that was edited on the standby is not overwritten', options, async () => {

@@ -89,6 +89,19 @@ const char *text_base_name(const char *path)
     return slash ? slash + 1 : path;
 }
 
+bool text_equal_but_numbers(const char *a, const char *b)
+{
+    static const char digits[] = "0123456789";
+    for (;;) {
+        size_t in_a = strspn(a, digits), in_b = strspn(b, digits);
+        if (*(a += in_a) != *(b += in_b) || !in_a != !in_b)
+            return false;
+        if (!*a)
+            return true;
+        a++, b++;
+    }
+}
+
 char *text_read_file(const char *path, size_t max_bytes, size_t *out_bytes)
 {
     struct stat st;

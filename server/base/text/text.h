@@ -26,6 +26,9 @@ void text_finish(struct text *text); /* Frees the text and leaves an empty one. 
 
 /* Returns a pointer to the last component of `path`, within the same string. */
 const char *text_base_name(const char *path);
+/* Returns whether two texts are equal except for their numbers. Such errors have the same cause: libcurl, for example, states elapsed
+   milliseconds and received bytes. */
+bool text_equal_but_numbers(const char *a, const char *b);
 /* Reads a whole file of at most max_bytes. Returns its content, followed by a 0 byte (free with mem_free()), or NULL on
    failure, with errno (EFBIG: too large). */
 char *text_read_file(const char *path, size_t max_bytes, size_t *out_bytes);

@@ -98,15 +98,15 @@ ${more}`);
     }
 
     // Starts a core; it becomes leader or standby. as: its --node name. Optional members of the core: `before`: command that
-    // starts the program; `tokenFile`: tokens that the core accepts; `standbyFile`: token with which it connects to the other
-    // core.
+    // starts the program; `args`: further options; `tokenFile`: tokens that the core accepts; `standbyFile`: token with which it
+    // connects to the other core.
     start(name, as = name) { return this.startCore(this.cores[name], as); }
     async startCore(core, as = core.name) {
         const { plant, standbyFile, tokenFile } = this.nodes;
         core.node = new Node(plant, ['--role', 'core', '--port', String(core.port), '--node', as, ...this.access,
             '--tokens', core.tokenFile ?? tokenFile, '--core-token-file', core.standbyFile ?? standbyFile,
             '--core', `ws://127.0.0.1:${core.toOther.port}`,
-            '--history', join(plant.folder, core.name, 'history')], core.file,
+            '--history', join(plant.folder, core.name, 'history'), ...(core.args ?? [])], core.file,
         ['unshare', '--mount', 'sh', '-c', `mount --bind ${core.hosts} /etc/hosts && exec "$@"`, 'sh',
             ...(core.before ?? [])]);
         core.program = core.node.program;
