@@ -743,7 +743,22 @@ static void lead_in_loop(void *arg)
     net_lead(reload->net, &(*reload->runtime)->services);
 }
 
-static void lead_now(struct reload *reload, int64_t begun_ns)
+/* Logs that this core leads. The stated time is how long the plant had no leader, as far as this core knows: it begins with the
+   previous leader's last sign of life. */
+static void say_lead(const struct reload *reload)
+{
+    struct log *log = reload->context->log;
+    int64_t age_ns = lease_keeper_heard_age_ns(reload->context->keeper);
+    if (age_ns >= 0)
+        log_info(log,
+                 "core: this core took over the lead %.1f s after the previous leader's last sign of life: it now polls devices and "
+                 "evaluates alarms",
+                 (double)age_ns / 1e9);
+    else
+        log_info(log, "core: this core took the lead, which no other core had: it now polls devices and evaluates alarms");
+}
+
+static void lead_now(struct reload *reload)
 {
     pthread_mutex_lock(&reload->put_lock);
     struct plant_runtime *runtime = *reload->runtime;
@@ -752,8 +767,7 @@ static void lead_now(struct reload *reload, int64_t begun_ns)
     bool good = open && plant_runtime_lead(runtime) && net_call(reload->net, lead_in_loop, reload);
     pthread_mutex_unlock(&reload->put_lock);
     if (good) {
-        log_info(reload->context->log, "core: this core took over the lead within %.1f s: it now polls devices and evaluates alarms",
-                 (double)(clock_mono_ns() - begun_ns) / 1e9);
+        say_lead(reload);
     } else if (open) {
         log_err(reload->context->log, "core: this core cannot take over: polling or the alarms could not be started (see the messages "
                                       "above); the daemon exits");
@@ -793,7 +807,7 @@ static void *run_leader(void *arg)
     struct reload *reload = arg;
     if (!wait_for_order(&reload->leader, &reload->leads))
         return NULL;
-    lead_now(reload, clock_mono_ns());
+    lead_now(reload);
     if (wait_for_order(&reload->leader, &reload->ends))
         end_leading_now(reload);
     return NULL;

@@ -52,6 +52,8 @@ void lease_saw(struct lease *lease, const struct lease_row *row, int64_t now_ns)
         /* the row has changed since this node sent its bid. A bid succeeds only while the row is unchanged, so a bid that
            reaches the database late would fail: this node stops waiting for its outcome */
         lease->bids = false;
+    if (!same && lease->known && !lease->leads)
+        lease->heard_ns = now_ns;
     if (!same)
         lease->seen_ns = now_ns;
     lease->row = *row;
@@ -103,6 +105,8 @@ void lease_won(struct lease *lease, int64_t sent_ns)
 
 bool lease_promise(struct lease *lease, int64_t now_ns)
 {
+    if (!lease->leads)
+        lease->heard_ns = now_ns;
     if (lease->leads || lease->bids)
         return false;
     lease->bound_ns = now_ns + LEASE_NS;

@@ -48,6 +48,9 @@ struct lease {
     bool offered;                  /* while another core leads: true: that core has just offered the lease to this node */
     /* while another core leads: time (nanoseconds of the caller's clock) when this node last saw the row change */
     int64_t seen_ns;
+    /* time (nanoseconds of the caller's clock) of the last sign of life of another leader: its request for a promise, or its change of
+       the row; 0: there was none. Unchanged while this node leads */
+    int64_t heard_ns;
     /* while another core leads: time (nanoseconds of the caller's clock) until which a promise forbids this node to bid */
     int64_t bound_ns;
     int64_t until_ns;              /* while this node leads: time (nanoseconds of the caller's clock) until which it may act as leader */

@@ -559,6 +559,14 @@ void lease_keeper_set_refused(struct lease_keeper *keeper, const char *why)
     pthread_mutex_unlock(&keeper->thread.lock);
 }
 
+int64_t lease_keeper_heard_age_ns(struct lease_keeper *keeper)
+{
+    pthread_mutex_lock(&keeper->thread.lock);
+    int64_t heard_ns = keeper->lease.heard_ns;
+    pthread_mutex_unlock(&keeper->thread.lock);
+    return heard_ns ? now_of_lease() - heard_ns : -1;
+}
+
 bool lease_keeper_promise(struct lease_keeper *keeper)
 {
     pthread_mutex_lock(&keeper->thread.lock);

@@ -40,6 +40,8 @@ bool lease_keeper_start(struct lease_keeper *keeper); /* starts the thread. Retu
    a leader may do. Sets *keeper to NULL; accepts a pointer to NULL. */
 void lease_keeper_destroy(struct lease_keeper **keeper);
 bool lease_keeper_leads(struct lease_keeper *keeper); /* Returns true if this core is the leader at the moment. */
+/* Returns how long ago, in nanoseconds, this node last heard from another leader; -1: it never has. */
+int64_t lease_keeper_heard_age_ns(struct lease_keeper *keeper);
 
 bool lease_keeper_is_alone(struct lease_keeper *keeper); /* Returns true if this node leads and no other core may take over. */
 

@@ -90,6 +90,9 @@ test('a saved tag list reaches the standby, which takes over with it', options, 
     assert.equal(await core.node.metric('plantcast_core_standby_differing_files'), 0);
     await two.takeOver(t, core, kill(core, 'SIGKILL'));
     assert.deepEqual(await positionOf(other.node), [0.5, 0, 0.25]);
+    // a standby waits 3 s after it last heard from a killed leader (LEASE_NS), so no shorter time can be stated
+    const [, took_s] = await other.program.line(/took over the lead ([\d.]+) s after the previous leader's last sign of life/);
+    assert.ok(Number(took_s) >= 3, took_s);
     await two.restart(core);
     await two.followed(other);
 });

@@ -51,6 +51,17 @@ TEST(cells_are_no_formulas)
     }
 }
 
+TEST(texts_are_compared_without_their_numbers)
+{
+    assert_true(text_equal_but_numbers("", ""));
+    assert_true(text_equal_but_numbers("timeout after 1000 ms, 12 bytes", "timeout after 2 ms, 345 bytes"));
+    assert_true(text_equal_but_numbers("a1", "a22"));
+    assert_false(text_equal_but_numbers("a1", "a"));
+    assert_false(text_equal_but_numbers("a", "a1"));
+    assert_false(text_equal_but_numbers("1a", "1b"));
+    assert_false(text_equal_but_numbers("disk full", "disk is full"));
+}
+
 TEST(files_are_read_whole_and_replaced_at_once)
 {
     char *folder = temp_folder(), *path = temp_path(folder, "f"), *nowhere = temp_path(folder, "no/f");

@@ -435,6 +435,30 @@ TEST(a_follower_waits_for_what_binds_it)
     assert_true(lease_may_bid(&a, 13 * S)); /* a restarted process of node a may bid for the lease that a had */
 }
 
+/* A node knows when it last heard from another leader: its own lead, and a row that it reads for the first time, do not count. */
+TEST(a_node_knows_when_it_last_heard_from_another_leader)
+{
+    struct lease_row row = { .epoch = 3, .beat = 9, .instance = 5, .leader = "a", .standby = "b" };
+    struct lease b = follower("b", &row, 10 * S);
+    assert_int_equal(b.heard_ns, 0); /* the row may be years old */
+    assert_true(lease_promise(&b, 12 * S));
+    assert_int_equal(b.heard_ns, 12 * S);
+    lease_saw(&b, &row, 13 * S);
+    assert_int_equal(b.heard_ns, 12 * S);
+    row.beat++;
+    lease_saw(&b, &row, 14 * S);
+    assert_int_equal(b.heard_ns, 14 * S);
+    lease_bid(&b);
+    assert_false(lease_promise(&b, 16 * S)); /* no promise, but the leader lives */
+    assert_int_equal(b.heard_ns, 16 * S);
+    lease_won(&b, 19 * S);
+    row = b.row;
+    row.beat++;
+    lease_saw(&b, &row, 20 * S);
+    assert_false(lease_promise(&b, 21 * S));
+    assert_int_equal(b.heard_ns, 16 * S);
+}
+
 TEST(a_leader_counts_the_standby_that_the_row_names)
 {
     const struct lease_row none = { 0 };
