@@ -518,12 +518,13 @@ static void on_failure(struct core_link *link, const char *why)
 {
     char text[WHY_BYTES];
     bool answered = why && strstr(why, "HS:"), untrusted = why && (strstr(why, "SSL") || strstr(why, "cert") || strstr(why, "tls="));
-    snprintf(
-        text, sizeof(text), "%s%s", why ? why : "no connection",
-        untrusted ? ": check that the core's certificate is trusted (--core-ca) and valid for this host name"
-        : answered
-            ? ": the core refuses this node: check that the core runs with --role core, and that this node's token has the role renderer"
-            : "");
+    const char *role = link->params.keeper ? "standby" : "renderer";
+    snprintf(text, sizeof(text), "%s%s%s", why ? why : "no connection",
+             untrusted ? ": check that the core's certificate is trusted (--core-ca) and valid for this host name"
+             : answered
+                 ? ": the core refuses this node: check that the core runs with --role core, and that this node's token has the role "
+                 : "",
+             answered && !untrusted ? role : "");
     if (answered || untrusted)
         refuse(link, text);
     else

@@ -126,10 +126,7 @@ static const char *core_standing(const struct server_context *server)
         return NULL;
     if (!core_end_leads(server))
         return server->session_context.core_up ? "standby: follows the core that leads" : "standby: not connected to a core that leads";
-    return lease_keeper_is_alone(keeper)           ? "leads alone (maintenance): no other core takes over"
-           : !renderers_have_standby(server)       ? "leads; no standby follows this core: the log says why"
-           : renderers_standby_lacks_files(server) ? "leads; a standby follows, but its models differ: the log says why"
-                                                   : "leads; a standby follows";
+    return lease_keeper_is_alone(keeper) ? "leads alone (maintenance): no other core takes over" : renderers_standby_texts(server)->status;
 }
 
 static bool has_core(const struct server_context *server)

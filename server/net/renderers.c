@@ -24,6 +24,7 @@
 #define ACTED "acted_ns" /* JSON key of a queued answer: monotonic time at which the answered action was on disk; removed before sending */
 enum { TICK_US = 200000, MAX_MESSAGE_BYTES = 256 * 1024 /* maximum size of one message */, MAX_ANSWERS = 1024, SEND_TIMEOUT_S = 5 };
 static const int64_t MAX_READINGS_DELAY_NS = 500 * NS_PER_MS, STANDBY_TIMEOUT_NS = 2 * NS_PER_S;
+static const int64_t DENIED_NS = 15 * NS_PER_S; /* nanoseconds for which the refusal of a node that may be the standby is shown */
 
 struct lists_seen {
     uint64_t views, notes, walls, pointed, pairings, links;
@@ -145,6 +146,54 @@ static bool takes_over(const struct renderer_peer *renderer)
     return is_standby(renderer) || (renderer->state == RENDERER_VOTES && !renderer->other_configuration);
 }
 
+/* Returns whether this core has refused a node in the last seconds that may be the standby. A refused node tries again every second or
+   two. */
+static bool has_denied(const struct server_context *server)
+{
+    return server->core.denied.at_ns && clock_mono_ns() - server->core.denied.at_ns < DENIED_NS;
+}
+
+static void note_denied(struct server_context *server, const char *who, const char *why)
+{
+    snprintf(server->core.denied.who, sizeof(server->core.denied.who), "%s", who);
+    snprintf(server->core.denied.why, sizeof(server->core.denied.why), "%.*s", (int)strcspn(why, "\r\n"), why);
+    server->core.denied.at_ns = clock_mono_ns();
+}
+
+void renderers_deny(struct server_context *server, const char *who, const char *why)
+{
+    char more[LOG_PACE_BYTES];
+    if (!server->params.keeper || !core_end_leads(server))
+        return;
+    note_denied(server, who, why);
+    server->core.denials.first_ns = server->core.denials.longest_ns = 60 * NS_PER_S;
+    if (log_pace_take(&server->core.denials, clock_mono_ns(), more))
+        log_err(server->params.log, "core: the connection of %s to this core is refused: %s%s", who, server->core.denied.why, more);
+    renderers_describe_standby(server);
+}
+
+const struct standby_texts *renderers_standby_texts(const struct server_context *server)
+{
+#define TEXTS(text)                                                                                                                        \
+    {                                                                                                                                      \
+        "ok; " text "\n", "leads; " text                                                                                                        \
+    }
+    static const struct standby_texts follows = TEXTS("a standby follows"),
+                                      models = TEXTS("a standby follows, but its models differ: the log says why"),
+                                      version = TEXTS("the standby has another version: it gets no data, but can take over"),
+                                      files =
+                                          TEXTS("the standby has another plant file or tag list and cannot take over: the log says why"),
+                                      denied = TEXTS("no standby follows, because this core refuses one: the log says why"),
+                                      none = TEXTS("no standby is connected");
+#undef TEXTS
+    const struct renderer_peer *standby = find_witness(server);
+    if (!standby)
+        return has_denied(server) ? &denied : &none;
+    if (!is_standby(standby))
+        return takes_over(standby) ? &version : &files;
+    return standby->differing ? &models : &follows;
+}
+
 /* Describes the standby for engineers' pages (`standby` in the message `status`). NULL: this core leads no pair. */
 static json_t *describe_standby(const struct server_context *server)
 {
@@ -152,6 +201,10 @@ static json_t *describe_standby(const struct server_context *server)
     if (!server->params.keeper || !core_end_leads(server))
         return NULL;
     json_t *text = json_pack("{s:b,s:o}", "connected", standby != NULL, "files", core_files_keys(standby ? standby->differing : 0));
+    if (!standby && has_denied(server)) {
+        json_object_set_new(text, "node", json_string(server->core.denied.who));
+        json_object_set_new(text, "why", json_string(server->core.denied.why));
+    }
     if (!standby)
         return text;
     json_object_set_new(text, "node", json_string(standby->name));
@@ -180,11 +233,6 @@ static void name_standby(struct server_context *server)
     if (server->params.keeper)
         lease_keeper_set_standby(server->params.keeper, witness ? witness->lease : "", witness && is_standby(witness));
     renderers_describe_standby(server);
-}
-
-bool renderers_standby_lacks_files(const struct server_context *server)
-{
-    return json_array_size(json_object_get(server->session_context.standby, "files")) > 0;
 }
 
 const char *renderers_complete_standby(const struct server_context *server)
@@ -660,6 +708,8 @@ static void introduce(struct server_context *server, struct renderer_peer *rende
         return;
     }
     judge(server, renderer, message, &own);
+    if (renderer->state == RENDERER_REFUSED && renderer->stands_by)
+        note_denied(server, renderer->name, renderer->refusal);
     name_standby(server);
     if (renderer->state != RENDERER_TAKEN) {
         say_refusal(server, renderer);

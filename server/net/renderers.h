@@ -12,8 +12,14 @@ int renderer_callback(struct lws *wsi, enum lws_callback_reasons reason, void *u
 const char *renderers_refusal(const struct server_context *server, struct lws *wsi);
 /* Returns whether a standby core of this version and configuration is connected to this core. */
 bool renderers_have_standby(const struct server_context *server);
-/* Returns whether the connected standby has other files than this core (plant file, tag list or models). */
-bool renderers_standby_lacks_files(const struct server_context *server);
+/* Texts about the standby of this leading core; static. */
+struct standby_texts {
+    const char *ready, *status; /* ready: body of /readyz; status: for the service manager */
+};
+const struct standby_texts *renderers_standby_texts(const struct server_context *server);
+/* Notes and logs that this core refused the handshake of a node at /core. The node may be the standby: if none is connected, engineers'
+   pages, /readyz and the service manager learn about the refusal. Does nothing on a core that does not lead a pair. */
+void renderers_deny(struct server_context *server, const char *who, const char *why);
 /* Updates what engineers' pages learn about the standby (session_context.standby). Call it whenever this core may have begun to
    lead or to follow. */
 void renderers_describe_standby(struct server_context *server);

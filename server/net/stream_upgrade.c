@@ -20,6 +20,13 @@ static int refuse(struct server_context *server, struct lws *wsi, int status, co
     return http_answer(wsi, status, text) < 0 ? -1 : 1;
 }
 
+/* Refuses the handshake of a node at /core for want of rights. */
+static int deny_node(struct server_context *server, struct lws *wsi, int status, const char *text)
+{
+    renderers_deny(server, connection_of(wsi)->address, text);
+    return refuse(server, wsi, status, text);
+}
+
 /* Returns whether the Origin header of a handshake is allowed: it names this host, or is absent because the client is not a
    browser. Other origins are refused: otherwise another host's page could use the rights that its visitor has here. */
 static bool origin_allowed(const struct server_context *server, struct lws *wsi)
@@ -46,11 +53,11 @@ int stream_check_upgrade(struct server_context *server, struct lws *wsi)
     if (!core && (!there || strcmp(path, "/stream") != 0))
         return refuse(server, wsi, HTTP_STATUS_NOT_FOUND, "the stream is at /stream\n");
     if (!connection_identify(server, wsi, &refusal))
-        return refuse(server, wsi, refusal.status, refusal.text ? refusal.text : refusal_words(refusal.code));
+        return (core ? deny_node : refuse)(server, wsi, refusal.status, refusal.text ? refusal.text : refusal_words(refusal.code));
     if (!origin_allowed(server, wsi))
         return refuse(server, wsi, HTTP_STATUS_FORBIDDEN, "this origin is not allowed; --origin URL allows one\n");
     if (core && (why = renderers_refusal(server, wsi)))
-        return refuse(server, wsi, HTTP_STATUS_FORBIDDEN, why);
+        return deny_node(server, wsi, HTTP_STATUS_FORBIDDEN, why);
     if (!core && role_is_node(connection_of(wsi)->role))
         return refuse(server, wsi, HTTP_STATUS_FORBIDDEN, refusal_words(REFUSAL_TOKEN_NODE));
     if (!connection_header(wsi, WSI_TOKEN_PROTOCOL, list, sizeof(list)))

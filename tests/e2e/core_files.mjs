@@ -149,6 +149,8 @@ test('a standby that cannot write says so, and gets the list once it can', optio
     const { files: differing, why } = await learns(core, (standby) => standby.why);
     assert.deepEqual(differing, ['tags']);
     assert.match(why, /Read-only file system/);
+    assert.equal(await (await core.node.fetch('/readyz')).text(),
+        'ok; the standby has another plant file or tag list and cannot take over: the log says why\n');
     assert.equal(await core.node.metric('plantcast_core_standby_differing_files'), 1);
     assert.equal(list(other), before_);
     assert.deepEqual(files(other), names);
@@ -224,6 +226,33 @@ test('a standby with another buffer beside its model says so', options, async ()
     await learns(core, ({ files: differing }) => differing.join() === 'models');
     writeFileSync(bin(other), bytes);
     reload(other);
+    await learns(core, isSame);
+});
+
+test('a standby that is refused for its token is named, with the reason', options, async () => {
+    const core = await two.leader(), other = two.other(core), good = two.nodes.standbyFile, ready = async () =>
+        await (await core.node.fetch('/readyz')).text();
+    await two.followed(core);
+    const unknown = join(two.plant.folder, 'unknown.token');
+    writeFileSync(unknown, `${'x'.repeat(43)}\n`);
+    for (const [file, says] of [[two.nodes.rendererFile, /the token r has the role renderer, but a standby needs/], [unknown, /token/]]) {
+        await other.program.stop();
+        core.program.said = '';
+        await until('none', async () => await ready() === 'ok; no standby is connected\n');
+        other.standbyFile = file;
+        await two.start(other.name);
+        const { connected, why } = await learns(core, ({ why: reason }) => reason);
+        assert.equal(connected, false);
+        assert.match(why, says);
+        assert.equal(await ready(), 'ok; no standby follows, because this core refuses one: the log says why\n');
+        await core.program.line(file === unknown ? /core: the connection of \S+ to this core is refused: .*token/
+            : /standby \w+: refused: the token r has the role renderer/);
+    }
+    await other.program.line(/this node's token has the role standby/);
+    await other.program.stop();
+    other.standbyFile = good;
+    await two.start(other.name);
+    await two.followed(core);
     await learns(core, isSame);
 });
 

@@ -10,6 +10,8 @@ test('the page is silent while the standby is up to date, and otherwise names fi
     for (const standby of [null, undefined, { connected: true, node: 'c2', files: [] }])
         assert.equal(standbyText(standby), '');
     assert.match(standbyText({ connected: false, files: [] }), /^No standby/);
+    const denied = { connected: false, files: [], node: '10.0.0.20', why: 'token' };
+    assert.match(standbyText(denied), /^No standby .* refuses .* 10\.0\.0\.20: token$/);
     assert.match(standbyText({ connected: true, node: 'c2', files: ['tags'] }), /c2 .*tag list/);
     const behind = standbyText({ connected: true, node: 'c2', files: ['plant', 'models'], why: 'disk full' });
     assert.match(behind, /c2 .*plant file, models.*: disk full$/);

@@ -10,7 +10,7 @@ export function standbyText(standby) {
     const { connected, node, why, takes_over : takesOver } = standby,
                                                          files = (standby.files ?? []).map((name) => say(`standby.${name}`)).join(', ');
     if (!connected)
-        return say('standby.none');
+        return why ? say('standby.denied', { node, why }) : say('standby.none');
     if (why)
         return files ? say('standby.behind', { node, files, why })
             : takesOver ? say('standby.warned', { node, why }) : say('standby.refused', { node, why });

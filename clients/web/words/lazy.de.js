@@ -695,6 +695,7 @@ plant: Anlagendatei
 tags: Messstellenliste
 models: Modelle
 none: Kein Reserveserver ist verbunden.
+denied: Kein Reserveserver ist verbunden. Dieser Server lehnt die Verbindung von {node} ab: {why}
 getting: Der Reserveserver {node} hat diese Dateien noch nicht: {files}.
 behind: Der Reserveserver {node} hat diese Dateien nicht erhalten ({files}): {why}
 refused: Der Reserveserver {node} kann nicht übernehmen: {why}

@@ -694,6 +694,7 @@ plant: plant file
 tags: tag list
 models: models
 none: No standby is connected.
+denied: No standby is connected. This server refuses the connection of {node}: {why}
 getting: The standby {node} does not yet have the new {files}.
 behind: The standby {node} has not got the {files}: {why}
 refused: The standby {node} cannot take over: {why}

@@ -685,6 +685,7 @@ plant: 플랜트 파일
 tags: 태그 목록
 models: 모델
 none: 연결된 예비 서버가 없습니다.
+denied: 연결된 예비 서버가 없습니다. 이 서버가 {node}의 연결을 거부합니다: {why}
 getting: 예비 서버 {node}에 아직 새 파일이 없습니다: {files}.
 behind: 예비 서버 {node}이(가) 다음 파일을 받지 못했습니다({files}): {why}
 refused: 예비 서버 {node}이(가) 넘겨받을 수 없습니다: {why}

@@ -54,11 +54,7 @@ static int ready(struct server_context *server, struct http_exchange *request)
                                    "not ready: this daemon moves its sessions to other daemons (drain)\n");
     if (render_service_ready(server->params.plant.render_service))
         return request_answer_text(request, HTTP_STATUS_OK,
-                                   !server->params.keeper            ? "ok\n"
-                                   : !renderers_have_standby(server) ? "ok, but no standby follows: the log says why\n"
-                                   : renderers_standby_lacks_files(server)
-                                       ? "ok; a standby follows, but its models differ: the log says why\n"
-                                       : "ok; a standby follows\n");
+                                   server->params.keeper ? renderers_standby_texts(server)->ready : "ok\n");
     return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "the OpenGL context was lost; a new context is being created\n");
 }
 
