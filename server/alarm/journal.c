@@ -7,6 +7,7 @@
 #include <time.h>
 
 #include "base/clock.h"
+#include "base/files/database.h"
 #include "base/mem.h"
 #include "base/thread.h"
 
@@ -88,7 +89,7 @@ static void try_to_write(struct journal *journal, bool now)
         journal->retry_ns = mono_ns + journal->retry_after_ns;
         if (!journal->failing)
             log_err(journal->log, "alarms: the alarm journal cannot be written (%s); new alarm events are kept in memory",
-                    strerror(-error));
+                    database_error_text(error));
     } else if (journal->failing) {
         log_info(journal->log, "alarms: writing the alarm journal works again; the alarm events kept in memory are recorded");
         journal->retry_after_ns = 0;

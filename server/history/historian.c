@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "base/clock.h"
+#include "base/files/database.h"
 #include "base/mem.h"
 #include "base/thread.h"
 #include "history/copy.h"
@@ -58,6 +59,7 @@ struct historian {
         counter *samples, *points, *lost, *waiting, *good, *bytes, *free, *backup;
     } counters;
     struct postgres *postgres; /* thread that sends history to PostgreSQL; NULL: no database is configured */
+    atomic_int error;          /* why readings cannot be recorded at the moment, as -errno; 0: they are recorded */
     atomic_bool restored;      /* set once points that this machine lacked have been copied from PostgreSQL to its history files */
     /* --- below: used by the historian's thread only */
     struct history_tag *tags;
@@ -504,14 +506,20 @@ static void try_to_write(struct historian *historian, int64_t mono_ns, int64_t u
         historian->retry_ns = mono_ns + historian->retry_after_ns;
         if (!historian->failing)
             log_event(historian->log, LOG_ERROR, EVENT_HISTORY_UNWRITABLE,
-                      "history: the history cannot be written to disk (%s); new samples are kept in memory", strerror(-error));
+                      "history: the history cannot be written to disk (%s); new samples are kept in memory", database_error_text(error));
     } else if (historian->failing) {
         log_event(historian->log, LOG_INFO, EVENT_HISTORY_WRITTEN,
                   "history: writing to disk works again; the samples kept in memory are recorded");
         historian->retry_after_ns = 0;
     }
     historian->failing = error != 0;
+    atomic_store(&historian->error, error);
     counter_set(historian->counters.good, !error);
+}
+
+int historian_error(struct historian *historian)
+{
+    return atomic_load(&historian->error);
 }
 
 /* --- start and stop ----------------------------------------------------------------------------------------------------------- */

@@ -46,6 +46,8 @@ void historian_sent_elsewhere(struct historian *historian, int64_t age_ns);
 /* Returns the age in nanoseconds of the newest time T such that all points recorded before T are in PostgreSQL; INT64_MAX: unknown, or
    no database is configured. */
 int64_t historian_sent_age_ns(struct historian *historian);
+/* Returns why readings cannot be recorded at the moment, as -errno (base/files/database.h); 0: they are recorded. Call from any thread. */
+int historian_error(struct historian *historian);
 /* On a reload of the plant: writes pending points and ends the historian, so that the reloaded plant's historian (`next`: that
    plant) can continue. Tags that `next` lacks have no value from now on. *owed receives the time spans whose points must still
    be read from PostgreSQL. Sets *historian to NULL. */

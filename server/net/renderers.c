@@ -176,7 +176,7 @@ const struct standby_texts *renderers_standby_texts(const struct server_context 
 {
 #define TEXTS(text)                                                                                                                        \
     {                                                                                                                                      \
-        "ok; " text "\n", "leads; " text                                                                                                        \
+        "ok; " text, "leads; " text                                                                                                        \
     }
     static const struct standby_texts follows = TEXTS("a standby follows"),
                                       models = TEXTS("a standby follows, but its models differ: the log says why"),

@@ -14,7 +14,7 @@ const char *renderers_refusal(const struct server_context *server, struct lws *w
 bool renderers_have_standby(const struct server_context *server);
 /* Texts about the standby of this leading core; static. */
 struct standby_texts {
-    const char *ready, *status; /* ready: body of /readyz; status: for the service manager */
+    const char *ready, *status; /* ready: first part of the body of /readyz; status: for the service manager */
 };
 const struct standby_texts *renderers_standby_texts(const struct server_context *server);
 /* Notes and logs that this core refused the handshake of a node at /core. The node may be the standby: if none is connected, engineers'

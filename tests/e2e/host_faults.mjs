@@ -2,7 +2,7 @@
 // Faults of a machine that runs for years: the volume of the history becomes read-only, and the daemon's certificate expires.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { copyFileSync, existsSync, mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { copyFileSync, existsSync, mkdirSync, mkdtempSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { basename, join } from 'node:path';
 import { after, test } from 'node:test';
@@ -74,7 +74,8 @@ test('on a volume that becomes read-only the daemon runs on and reports it; unsa
         await plant.daemon.line(/history-[\d-]+\.sqlite: .*error$/m);
         await plant.daemon.line(/history: the history cannot be written to disk \(/);
         assert.equal((await get(plant.port, '/snapshot.png?width=320&height=200')).status, 200, 'pictures are still drawn');
-        assert.equal((await get(plant.port, '/readyz')).status, 200);
+        const ready = await get(plant.port, '/readyz');
+        assert.deepEqual([ready.status, String(ready.body)], [200, 'ok; readings are not recorded: the log says why\n']);
         await take(plant, 33);
         assert.deepEqual(await plant.daemon.stop(), { code: 0, signal: null }, plant.daemon.said);
         unmount();
@@ -93,6 +94,38 @@ test('on a volume that becomes read-only the daemon runs on and reports it; unsa
         delete process.env.RUNTIME_DIRECTORY;
         await plant.destroy();
         unmount();
+    }
+});
+
+test('after a downgrade, log, /readyz and a metric tell of a history file in a newer version, and its removal helps', {
+    skip, timeout: 180000,
+}, async () => {
+    const plant = await TinyPlant.create(), history = join(plant.folder, 'history'), moved = join(plant.folder, 'moved');
+    try {
+        await plant.start('--history', history);
+        await take(plant, 11);
+        await until('a point on disk', () => ledger(plant, history).some((line) => /,11[.,]/.test(`${line},`)));
+        await plant.daemon.stop();
+        const [file] = readdirSync(history).filter((name) => /^history-.*\.sqlite$/.test(name));
+        sh(`python3 -c "import sqlite3; sqlite3.connect('${join(history, file)}').execute('PRAGMA user_version = 99')"`);
+        await plant.startDaemon('--history', history);
+        const [, command] = await plant.daemon.line(new RegExp(`${file}: version 99 of this file was written by a newer Plantcast; ` +
+            'this program supports version \\d+, .* run `(mv .*) ANOTHER'));
+        await plant.daemon.line(/history: the history cannot be written to disk \(a newer Plantcast wrote a file: /);
+        await until('plantcast_history_good is 0', async () => await gauge(plant, 'plantcast_history_good') === 0);
+        const { status, body } = await get(plant.port, '/readyz');
+        assert.equal(status, 200);
+        assert.match(String(body), /^ok; readings are not recorded, because a newer Plantcast wrote a history file: /);
+        await plant.daemon.stop();
+        mkdirSync(moved);
+        assert.equal(sh(`${command} ${moved}`).status, 0);
+        await plant.startDaemon('--history', history);
+        await take(plant, 22);
+        await until('a point on disk again', () => ledger(plant, history).some((line) => /,22[.,]/.test(`${line},`)));
+        assert.equal(String((await get(plant.port, '/readyz')).body), 'ok\n');
+        assert.equal(await gauge(plant, 'plantcast_history_good'), 1);
+    } finally {
+        await plant.destroy();
     }
 });
 

@@ -151,8 +151,11 @@ static bool is_newer(struct database *database, int version)
 {
     int known = database->format->version;
     if (version > known)
-        log_err(database->log, "%s: version %d of this file was written by a newer Plantcast; this program supports version %d",
-                database->path, version, known);
+        log_err(
+            database->log,
+            "%s: version %d of this file was written by a newer Plantcast; this program supports version %d, and neither reads nor "
+            "changes the file. Install the newer Plantcast again; or stop the daemon, run `mv %s* ANOTHER_FOLDER`, and start the daemon",
+            database->path, version, known, database->path);
     return version > known;
 }
 
@@ -196,6 +199,11 @@ static int open_to_write(struct database *database, int *version)
     return code == SQLITE_OK && *version < database->format->version ? migrate(database, *version) : code;
 }
 
+const char *database_error_text(int error)
+{
+    return error == -DATABASE_NEWER ? "a newer Plantcast wrote a file: the line before names the file and what to do" : strerror(-error);
+}
+
 int database_open(struct database *database, bool *renewed)
 {
     int version = 0, code = open_to_write(database, &version);
@@ -203,7 +211,7 @@ int database_open(struct database *database, bool *renewed)
     if (*renewed)
         code = open_to_write(database, &version);
     int error = database_fail(database, code, "cannot be opened");
-    return error || !is_newer(database, version) ? error : -EACCES;
+    return error || !is_newer(database, version) ? error : -DATABASE_NEWER;
 }
 
 /* Opens a database on a read-only disk as immutable, because SQLite cannot create its -wal and -shm files there. Correct only
@@ -244,7 +252,7 @@ int database_open_to_read(struct database *database)
             code = read_version(database, &version);
     }
     int error = database_fail(database, code, "cannot be read");
-    return error ? error : is_newer(database, version) ? -EACCES : version ? 0 : -ENOENT;
+    return error ? error : is_newer(database, version) ? -DATABASE_NEWER : version ? 0 : -ENOENT;
 }
 
 int database_open_beside(struct database *database)

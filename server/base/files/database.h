@@ -5,12 +5,15 @@
    -EROFS: the file cannot be written. */
 #ifndef BASE_FILES_DATABASE_H
 #define BASE_FILES_DATABASE_H
+#include <errno.h>
 #include <sqlite3.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
 #include "base/log/log.h"
+
+#define DATABASE_NEWER EPROTONOSUPPORT /* errno for a file that a newer version of this program wrote */
 
 struct database_format { /* one of our file formats: SQLite's application id and version, the schema, and the prepared statements */
     int application_id, version;
@@ -33,8 +36,10 @@ void database_init(struct database *database, struct log *log, char *path, const
 void database_finish(struct database *database); /* Closes the database; a zeroed struct is allowed and stays zeroed. */
 
 /* Opens the file for writing. Creates it if it is missing, and upgrades an older version in one transaction. A damaged file is
-   renamed and replaced by a new one; *renewed is then true. A file of a newer version is left unchanged: -EACCES. */
+   renamed and replaced by a new one; *renewed is then true. A file of a newer version is left unchanged: -DATABASE_NEWER. */
 int database_open(struct database *database, bool *renewed);
+/* Returns the text for an error of this module, for the log (static, or valid until strerror() is called again). */
+const char *database_error_text(int error);
 /* Opens the file for reading, even on a read-only disk. Returns -ENOENT, not logged, if the file is missing or still empty. The
    file may have any version up to this program's. */
 int database_open_to_read(struct database *database);

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/files/database.h"
 #include "base/mem.h"
 #include "corelink/core_instant.h"
 #include "corelink/core_tags.h"
@@ -41,6 +42,22 @@ static void hear_balancer(struct server_context *server, struct http_exchange *r
         core_loss_on_check(&server->life.core_loss, state, clock_mono_ns());
 }
 
+/* Answers 200, also if readings are not recorded: a load balancer must not take pictures from users for that reason. */
+static int answer_ready(const struct server_context *server, struct http_exchange *request)
+{
+    struct historian *historian = server->params.plant.historian;
+    int error = historian ? historian_error(historian) : 0;
+    char *text =
+        mem_printf("%s%s\n", server->params.keeper ? renderers_standby_texts(server)->ready : "ok",
+                   error == -DATABASE_NEWER ? "; readings are not recorded, because a newer Plantcast wrote a history file: the log "
+                                              "names the file and the command that moves it away"
+                   : error                  ? "; readings are not recorded: the log says why"
+                                            : "");
+    int result = request_answer_text(request, HTTP_STATUS_OK, text);
+    mem_free(text);
+    return result;
+}
+
 static int ready(struct server_context *server, struct http_exchange *request)
 {
     hear_balancer(server, request);
@@ -53,8 +70,7 @@ static int ready(struct server_context *server, struct http_exchange *request)
         return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE,
                                    "not ready: this daemon moves its sessions to other daemons (drain)\n");
     if (render_service_ready(server->params.plant.render_service))
-        return request_answer_text(request, HTTP_STATUS_OK,
-                                   server->params.keeper ? renderers_standby_texts(server)->ready : "ok\n");
+        return answer_ready(server, request);
     return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "the OpenGL context was lost; a new context is being created\n");
 }
 
