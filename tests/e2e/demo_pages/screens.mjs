@@ -239,7 +239,8 @@ test('an open panel covers neither legends nor the bar of a split view, and ends
         const panels = { display: '#display', picture: '#picture-panel', views: '#views' };
         const set = (params) => page.evaluate((all) => globalThis.plantcast.session.setParams(all), params);
         const right = { group: 'vibration' };
-        for (const [width, height, split] of [[1280, 800, null], [1280, 800, right], [1600, 900, right]]) {
+        for (const [width, height, split] of [[1280, 800, null], [1280, 640, null], [1024, 600, null], [1280, 800, right],
+            [1600, 900, right]]) {
             await resize(page, { width, height });
             await set({ group: 'temperature', split });
             await page.locator('#legend-right').waitFor({ state: split ? 'visible' : 'hidden' });
@@ -247,6 +248,8 @@ test('an open panel covers neither legends nor the bar of a split view, and ends
                 await page.locator(`#${button}-toggle`).click();
                 await page.locator(`${panel}.open`).waitFor();
                 await becomes(covered, [], `${panel} at ${width}x${height}`);
+                const [left, legend] = await Promise.all(['#viewport', '#legend'].map(async (one) => (await boxOf(page, one)).x));
+                assert.ok(split || legend - left < 20, `the legend leaves the middle of the picture free: ${legend} ${left}`);
                 assert.equal((await visibleBoxes()).length, split ? 5 : 3, panel);
                 assert.ok((await boxOf(page, `${panel}.open`)).height > 250, `${panel} has room at ${width}x${height}`);
                 await shoot(page, `legend-${button}${split ? `-split-${width}` : ''}`);
@@ -273,6 +276,41 @@ test('an open panel covers neither legends nor the bar of a split view, and ends
         await page.waitForFunction(() => document.documentElement.dataset.theme === 'dark');
         const ground = () => page.locator('#viewport').evaluate((e) => getComputedStyle(e).backgroundColor.match(/\d+/g).map(Number));
         await becomes(async () => Math.max(...await ground()) < 90, true, 'no bright strips at the sides of a picture');
+    }));
+
+test('beside an open panel, the notice of hidden equipment and a card cover neither the legend nor each other', options, () => withPage(
+    { viewport: { width: 1280, height: 640 } }, async (page) => {
+        const parts = ['#legend', '.chip:not(.outside)', ':is(.panel, .display).open', '.viewport > #card'];
+        const boxes = () => page.evaluate((all) => all.map((selector) => {
+            const { left, top, right, bottom, width } = document.querySelector(selector)?.getBoundingClientRect() ?? { width: 0 };
+            return { selector, left, top, right, bottom, width };
+        }), parts);
+        await page.evaluate(() => {
+            const { session } = globalThis.plantcast;
+            session.setParams({ hidden: [session.model.assets.at(-1).id] });
+        });
+        await visible(page, '.chip:not(.outside)');
+        await ask(page, 'selectTag');
+        await visible(page, '.viewport > #card');
+        for (const [width, height] of [[1280, 640], [1024, 600]]) {
+            await resize(page, { width, height });
+            if (width < 1280) { // no room for a card between legend and panel
+                await page.evaluate(() => globalThis.plantcast.selectTag(null));
+                await hidden(page, parts.pop());
+            }
+            for (const [button, panel] of [['picture', '#picture-panel'], ['display', '#display']]) {
+                await page.locator(`#${button}-toggle`).click();
+                await visible(page, `${panel}.open`);
+                await becomes(async () => {
+                    const all = await boxes();
+                    return all.flatMap((a, i) => (a.width > 0 ? all.slice(i + 1) : [{ selector: 'nothing' }])
+                        .filter((b) => !b.width || (a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom))
+                        .map((b) => `${a.selector} and ${b.selector}`));
+                }, [], `${panel} at ${width}x${height}`);
+                await shoot(page, `legend-chip-${button}-${width}`);
+                await page.locator(`#${button}-toggle`).click();
+            }
+        }
     }));
 
 test('tablet in portrait: the equipment list is folded, and nothing sticks out',

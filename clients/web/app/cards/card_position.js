@@ -6,6 +6,7 @@ import { halves } from '../../core/split_view.js';
 import { byId } from '../common/dom.js';
 
 const AWAY_PX = 16, RIM_PX = 8, TALLEST_PX = 280;
+const LEGEND_PX = 12; // distance of the legend from the picture's edge
 // RING_PX: half the width of an alarm ring; RING_COST: a covered ring counts as this many covered markers
 const RING_PX = 14, RING_COST = 3;
 
@@ -51,15 +52,22 @@ export function placeInPicture({ picture, shown }, { width, height }, position, 
     return at ? [((part.left + at[0]) * width) / picture.shownWidth, (at[1] * height) / picture.fullHeight] : null;
 }
 
+// Returns the left and right edge of the part of the picture that the legend leaves free. If an open panel has moved the legend
+// to the left edge (common/panel.css), the part ends at the panel.
+function besideOf({ offsetLeft: left, offsetWidth: wide }, width) {
+    const panel = parseFloat(getComputedStyle(byId('legend')).getPropertyValue('--beside'));
+    return left <= LEGEND_PX ? [left + wide, width - (panel || 0)] : [0, left];
+}
+
 // Positions the card next to the point `at` ([x, y] in CSS pixels; null: in a corner), clear of the status banner, the legend
 // and the name of the alarm whose moment is shown. Leaves other visible markers of `overlay` uncovered where there is room.
 const places = new WeakMap(); // card's element -> { of (the object that the card describes), place (the card's last position) }
 export function standBeside(element, { width, height }, at, overlay, of) {
     const banner = byId('banner'), legend = byId('legend'), lies = legend.offsetWidth > width / 2;
     const above = banner.hidden ? 0 : banner.offsetTop + banner.offsetHeight, strip = lies ? legend.offsetTop + legend.offsetHeight : 0;
-    const beside = lies || legend.hidden || legend.offsetLeft <= 0 ? width : legend.offsetLeft;
+    const [from, to] = lies || legend.hidden || legend.offsetLeft <= 0 ? [0, width] : besideOf(legend, width);
     const moment = byId('moment'), most = moment && !moment.hidden && moment.offsetTop > above + TALLEST_PX ? moment.offsetTop : height;
-    const free = { left: RIM_PX, top: RIM_PX + Math.max(above, strip), right: beside - RIM_PX, bottom: most - RIM_PX };
+    const free = { left: from + RIM_PX, top: RIM_PX + Math.max(above, strip), right: to - RIM_PX, bottom: most - RIM_PX };
     const marks = overlay.markers.filter(({ tag, occluded, alarm }) => tag !== of && (alarm || !occluded)).map((marker) => {
         const { x, y } = overlay.placeOf(marker);
         return [x, y, Boolean(marker.alarm)];
