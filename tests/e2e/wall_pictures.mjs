@@ -93,6 +93,16 @@ const amiss = () => [...document.querySelectorAll('.pane iframe')].flatMap((fram
     return found;
 });
 
+// Returns texts of the alarm panes whose capitals (0.72 of the font size) are lower than 15.5 minutes of arc for people at the wall's
+// distance. 16 minutes are legible (core/wall.js); the rest allows for rounding.
+const tiny = (wall) => {
+    const { inches, distance_m: away } = wall, mm = (inches * 25.4) / Math.hypot(innerWidth, innerHeight);
+    return [...document.querySelectorAll('.pane.alarms *')].filter((e) => e.checkVisibility() &&
+        [...e.childNodes].some(({ nodeType, textContent }) => nodeType === Node.TEXT_NODE && textContent.trim()))
+        .map((e) => [e.textContent, Math.atan(0.72 * parseFloat(getComputedStyle(e).fontSize) * mm / (away * 1000)) * 180 * 60 / Math.PI])
+        .filter(([, minutes]) => minutes < 15.5);
+};
+
 for (const wall of ['overview', 'six']) {
     for (const size of SIZES) {
         test(`nothing on wall ${wall} at ${size.join('x')} is cut off or misplaced`,
@@ -105,6 +115,7 @@ for (const wall of ['overview', 'six']) {
             await keep(page, `wall-${wall}`, size);
             assert.deepEqual(await page.evaluate(cut), []);
             assert.deepEqual(await page.evaluate(amiss), []);
+            assert.deepEqual(await page.evaluate(tiny, { inches: 75, distance_m: wall === 'six' ? 3 : 4 }), []);
             assert.deepEqual(errors, []);
             await close();
         });
