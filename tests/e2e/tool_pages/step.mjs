@@ -16,7 +16,7 @@ const LEAST_VIEWS = 10, LEAST_RUN_PX = 12, FRAME_MS = 1000 / 60;
 // MARK_PX: maximum distance of a marker from its point; PICTURE_PX: maximum distance (median of the frames) between the edges of the
 // coloured area and those of the box, both in page pixels. Encoded edges are blurred, more so in moving pictures, which on a loaded
 // machine have fewer and larger pixels: PICTURE_PX allows for two page pixels per picture pixel and is scaled for larger ones.
-const MARK_PX = 1.5, PICTURE_PX = 5;
+const MARK_PX = 1, PICTURE_PX = 5;
 // WARPED_PX: distance beyond the box, in page pixels, up to which coloured pixels are normal: JPEG codes colour in blocks of 16
 // pixels, which may extend beyond the box in a few rows. A wrong warp, which stretches across a step in depth, would colour
 // whole areas farther away.
