@@ -5,6 +5,8 @@ import assert from 'node:assert/strict';
 import { mock, test } from 'node:test';
 import { deflateRawSync } from 'node:zlib';
 import { hasViewportShape, Warp } from '../../clients/web/app/picture/warp.js';
+import { ClipGizmo } from '../../clients/web/app/views/clip_gizmo.js';
+import { Isolines } from '../../clients/web/app/viewport/isolines.js';
 import { projector } from '../../clients/web/core/camera.js';
 import { sight } from '../../clients/web/core/camera_moves.js';
 import { decodeGrid, readHeader } from '../../clients/web/core/depth_grid.js';
@@ -335,5 +337,19 @@ test('if a picture comes without depth, or its depth cannot be decoded, the page
         assert.equal(warp.draw(), true, 'the screen changes');
         assert.deepEqual([warp.isShown, warp.source, canvas.style.display, picture.camera], [false, null, 'none', PERSPECTIVE]);
         assert.equal(warp.draw(), false);
+    }
+});
+
+test('values on contour lines and handles of a section move with a warped picture', () => {
+    const moved = (x, y) => (x < 400 ? [x + 30, y - 20] : null);
+    const picture = { fullWidth: 800, fullHeight: 600, shownWidth: 800, camera: PERSPECTIVE, moved };
+    const written = [], context = { measureText: () => ({ width: 20 }), fillRect() {}, fillText: (...given) => written.push(given) };
+    const session = { picture, shown: {}, range: [0, 100], model: {}, markersOf: () => ({ isolines: [[50, 100, 200], [60, 500, 200]] }) };
+    Isolines.prototype.draw.call({ session, overlay: { context, wide: 800, high: 600, setFont() {} } }, []);
+    assert.deepEqual(written, [['50', 130, 180.5]], 'a value whose place has left the picture is not written');
+    const { get } = Object.getOwnPropertyDescriptor(ClipGizmo.prototype, 'views'), viewport = { width: 800, height: 600 };
+    for (const camera of [PERSPECTIVE, { ...PERSPECTIVE, eye: [6.5, -8.6, 5.2] }]) {
+        const [{ project }] = get.call({ session: { ...session, picture: { ...picture, camera } }, viewport });
+        assert.deepEqual(project([1, 1, 2]), projector(camera, 800, 600)([1, 1, 2]).slice(0, 2));
     }
 });
