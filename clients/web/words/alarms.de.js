@@ -73,7 +73,8 @@ kind: Alarm
 area: Bereich
 about: Benennung
 us: Zeit
-then: Wert
+raised: Beginn
+then: Wert damals
 now: Jetzt
 limit: Grenze
 since: Alter

@@ -73,7 +73,8 @@ kind: Alarm
 area: Area
 about: Description
 us: Time
-then: Value
+raised: Raised at
+then: Value then
 now: Now
 limit: Limit
 since: Age

@@ -70,7 +70,8 @@ kind: 알람
 area: 구역
 about: 설명
 us: 시각
-then: 값
+raised: 발생 시각
+then: 당시 값
 now: 현재값
 limit: 한계
 since: 경과

@@ -95,6 +95,23 @@ for (const [lang, decimal, date] of READERS.slice(sweep(0, 1))) {
     });
 }
 
+// The columns of the alarm list and of the journal that a desk of 1280 pixels shows.
+const COLUMNS = ['state', 'priority', 'tag', 'kind', 'about', 'us', 'then', 'now', 'limit', 'since', 'do'];
+// Returns the columns that a table does not show, the cells of its first row whose text is cut, and whether the page scrolls sideways.
+// The description may be cut, because its title has the whole text.
+const hiddenColumns = (page, tab) => page.evaluate(([name, columns]) => {
+    const row = document.querySelector(`#${name}-list tr`), edge = document.getElementById('alarms').getBoundingClientRect().right;
+    const cells = columns.map((col) => [col, row.querySelector(`[data-col=${col}]`)]), about = row.querySelector('[data-col=about]');
+    const isCut = (cell) => cell.scrollWidth > cell.clientWidth || cell.scrollHeight > cell.clientHeight;
+    return {
+        hidden: cells.filter(([, { offsetWidth }]) => offsetWidth < 20).map(([col]) => col),
+        cut: cells.filter(([col, cell]) => col !== 'about' && (isCut(cell) || cell.getBoundingClientRect().right > edge))
+            .map(([col]) => col),
+        untitled: isCut(about) && about.title !== about.textContent,
+        scrolls: document.scrollingElement.scrollWidth > innerWidth,
+    };
+}, [tab, COLUMNS]);
+
 test('titles and current values of the alarm list and the journal are complete, also with sort marks', options, async () => {
     for (const lang of ['en', 'ko', 'de']) {
         const { page, close } = await openPage(`${url}?lang=${lang}`, { viewport: { width: 1920, height: 900 } });
@@ -109,7 +126,8 @@ test('titles and current values of the alarm list and the journal are complete, 
                     const cut = await page.evaluate((name) => [...document.querySelectorAll(`#${name}-table thead th`)].filter((head) => {
                         const title = head.querySelector('button') ?? head;
                         head.querySelector('button')?.click();
-                        return title.clientWidth > 1 && title.scrollWidth > title.clientWidth;
+                        const { clientWidth, clientHeight, scrollWidth, scrollHeight } = title;
+                        return clientWidth > 1 && (scrollWidth > clientWidth || scrollHeight > clientHeight);
                     }).map(({ textContent }) => textContent), tab);
                     assert.deepEqual(cut, [], `${lang}, ${tab}, ${width}`);
                     const [needed, room] = await page.locator(`#${tab}-list td[data-col=now]`).first().evaluate((cell) => {
@@ -118,6 +136,11 @@ test('titles and current values of the alarm list and the journal are complete, 
                         return [cell.scrollWidth, cell.clientWidth];
                     });
                     assert.ok(needed <= room, `${lang}, ${tab}, ${width}: a value of ${needed} pixels is cut at ${room}`);
+                    if (width >= 1280) {
+                        assert.deepEqual(await hiddenColumns(page, tab), { hidden: [], cut: [], untitled: false, scrolls: false },
+                            `${lang}, ${tab}, ${width}`);
+                        await shoot(page, `columns-${lang}-${tab}-${width}`);
+                    }
                 }
                 await resize(page, { width: 1920, height: 900 });
             }
@@ -132,6 +155,37 @@ test('titles and current values of the alarm list and the journal are complete, 
                 });
                 assert.ok(needed <= room, `${lang}, ${width}: a state of ${needed} pixels is cut at ${room}`);
             }
+        } finally {
+            await close();
+        }
+    }
+});
+
+test('on a phone held sideways, rows of alarms are low, and buttons are finger-sized', options, async () => {
+    for (const lang of ['ko', 'de', 'en']) {
+        const { page, errors, close } = await openPage(`${url}?lang=${lang}`, { ...PHONE, viewport: { width: 844, height: 390 } });
+        try {
+            await waitForPicture(page);
+            await page.locator('#alarm-strip').tap();
+            const row = page.locator('#alarms-list tr').first();
+            await row.locator('button').first().waitFor();
+            await becomes(() => row.evaluate((element) => {
+                const cell = (col) => element.querySelector(`[data-col=${col}]`), { height, left, right } = element.getBoundingClientRect();
+                cell('now').firstChild.data = '200.00';
+                cell('now').querySelector('small').textContent = 'mm/s';
+                const { left: x, top: y } = cell('state').getBoundingClientRect();
+                return {
+                    isLow: height <= 56,
+                    cut: ['priority', 'tag', 'kind', 'now', 'state'].filter((col) => cell(col).scrollWidth > cell(col).clientWidth ||
+                        cell(col).scrollHeight > cell(col).clientHeight),
+                    small: [...cell('do').children].map((button) => button.getBoundingClientRect()).filter((box) => box.width < 43.5 ||
+                        box.height < 43.5 || box.left < left || box.right > right),
+                    // a tap anywhere on the row's text flies to the tag
+                    flies: Boolean(document.elementFromPoint(x + 4, y + 4)?.closest('.alarm-go')),
+                };
+            }), { isLow: true, cut: [], small: [], flies: true }, lang);
+            await shoot(page, `rows-${lang}-844`);
+            assert.deepEqual(errors, []);
         } finally {
             await close();
         }

@@ -321,12 +321,15 @@ test('at 900 pixels the alarm list shows at least twenty rows, sorts by any colu
     for (const { name, limits } of many)
         await plant.ask(`set ${name} ${limits.H + 0.1}`);
     await waitForWords(`^${many.length} active alarms, ${many.length} unacknowledged$`);
-    await page.setViewportSize({ width: 1600, height: 900 });
-    await settle(page);
-    await until('twenty rows of at most 29 pixels', async () => {
-        const { count, highest } = await wholeRows();
-        return count >= 20 && highest <= 29;
-    }, 30, async () => JSON.stringify(await wholeRows()));
+    for (const width of [1280, 1600]) {
+        await page.setViewportSize({ width, height: 900 });
+        await settle(page);
+        await until('twenty rows of at most 29 pixels', async () => {
+            const { count, highest } = await wholeRows();
+            return count >= 20 && highest <= 29;
+        }, 30, async () => JSON.stringify(await wholeRows()));
+        await shoot(page, `alarms-many-${width}`);
+    }
     for (const [id, text] of [['#alarms-count', `${many.length}`],
         ['#alarms-which option[value=waiting]', `Unacknowledged (${many.length})`],
         ['#alarms-which option[value=gone]', 'Returned to normal (0)']])

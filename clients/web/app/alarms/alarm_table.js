@@ -16,18 +16,20 @@ const ICONS = {
 
 export class AlarmTable {
     // table: an empty <table>; select: a selection list of the sort orders, for screens without column titles; pick: node in
-    // the first column's title that selects rows, or null. changed(): called after the user changes the sort order.
-    constructor(table, select, pick, changed) {
+    // the first column's title that selects rows, or null. changed(): called after the user changes the sort order. time: key of
+    // the words for the title of the column with times.
+    constructor(table, select, pick, changed, time = 'us') {
         Object.assign(this, { select, changed, sort: { by: null, down: false } });
+        const titleOf = (name) => say(`column.${name === 'us' ? time : name}`);
         this.heads = COLUMNS.filter(sortable).map((name) => [name, make('th', { scope: 'col', 'data-col': name, 'aria-sort': 'none' },
-            make('button', { type: 'button', title: say('column.sort', { what: say(`column.${name}`) }),
-                onclick: () => this.order(nextSort(this.sort, name)) }, say(`column.${name}`)))]);
+            make('button', { type: 'button', title: say('column.sort', { what: titleOf(name) }),
+                onclick: () => this.order(nextSort(this.sort, name)) }, titleOf(name)))]);
         const heads = new Map(this.heads), other = (name) => (name === 'pick'
             // a first column without the title node `pick` gets role none, so that screen readers read no title for it
             ? make('th', { 'data-col': name, ...pick ? {} : { role: 'none' } }, pick)
-            : make('th', { scope: 'col', 'data-col': name }, say(`column.${name}`)));
+            : make('th', { scope: 'col', 'data-col': name }, titleOf(name)));
         table.prepend(make('thead', {}, make('tr', {}, ...COLUMNS.map((name) => heads.get(name) ?? other(name)))));
-        fillSelect(select, [['', say('column.order')], ...this.heads.map(([name]) => [name, say(`column.${name}`)])], '');
+        fillSelect(select, [['', say('column.order')], ...this.heads.map(([name]) => [name, titleOf(name)])], '');
         select.addEventListener('change', () => this.order({ by: select.value || null, down: false }));
     }
 
@@ -95,11 +97,14 @@ export function refreshCells(session, element, row, fresh) {
     setText(element.querySelector('[data-col=since]'), row.us === null || now === null ? '' : ageText((now - row.us) / 1000));
 }
 
-function timeText(session, us) {
+// Returns title and content of the cell with the time of a raise or change: the time if it was today, otherwise day and time, which are
+// two lines in a narrow list.
+function timeCell(session, us) {
     if (us === null)
-        return '';
-    const clock = zoneClock(session.model.plant.time_zone), at = clock(us / 1000);
-    return at.date === clock(session.clockUs() / 1000).date ? at.time : `${at.day} ${at.time.slice(0, 5)}`;
+        return [null];
+    const clock = zoneClock(session.model.plant.time_zone), at = clock(us / 1000), title = `${at.date} ${at.time}`;
+    return at.date === clock(session.clockUs() / 1000).date ? [title, at.time]
+        : [title, make('span', {}, at.day), ' ', make('span', {}, at.time.slice(0, 5))];
 }
 
 const flyButton = (tag, name, fly) => make('button', { type: 'button', class: 'alarm-go', title: say('alarms.fly', { tag: tag.name }),
@@ -120,7 +125,7 @@ export function rowOf(session, row, fresh, { look, pick, state, note, also = '',
         cell('kind', null, say(`kind.${kind}`)), cell('area', row.area, row.area),
         cell('about', about.join(' · '), ...about.flatMap((part, i) =>
             [i > 0 ? ' · ' : null, part === note ? make('em', {}, part) : part])),
-        cell('us', null, timeText(session, row.us)), cell('then', value[1], value[0]), cell('now'),
+        cell('us', ...timeCell(session, row.us)), cell('then', value[1], value[0]), cell('now'),
         cell('limit', limit[1], limit[0]), cell('since'), cell('do', null, ...buttons));
     refreshCells(session, element, row, fresh);
     return element;

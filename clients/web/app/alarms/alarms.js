@@ -30,7 +30,7 @@ export class AlarmList {
         this.filter = { ...NO_FILTER };
         this.pickAll = make('input', { type: 'checkbox', id: 'alarms-all', 'aria-label': say('alarms.chooseall'),
             title: say('alarms.chooseall'), onchange: () => this.chooseAll(this.pickAll.checked) });
-        this.table = new AlarmTable(byId('alarms-table'), byId('alarms-order'), this.pickAll, () => this.show());
+        this.table = new AlarmTable(byId('alarms-table'), byId('alarms-order'), this.pickAll, () => this.show(), 'raised');
         fillSelect(byId('alarms-priority'), [['', say('alarms.priorities')],
             ...[1, 2, 3, 4].map((priority) => [priority, say('alarms.priority', { priority })])], '');
         for (const [name, id] of Object.entries(FILTERS))
