@@ -112,6 +112,14 @@ const hiddenColumns = (page, tab) => page.evaluate(([name, columns]) => {
     };
 }, [tab, COLUMNS]);
 
+// Draws the alarm list again as if two days had passed, so that alarms are not of today.
+const showLater = (page) => page.evaluate(() => {
+    const { session, modules } = globalThis.plantcast, us = session.clockUs() + 2 * 86400e6;
+    session.clockUs = () => us;
+    document.getElementById('alarms-list').replaceChildren();
+    modules.there('alarms').show();
+});
+
 test('titles and current values of the alarm list and the journal are complete, also with sort marks', options, async () => {
     for (const lang of ['en', 'ko', 'de']) {
         const { page, close } = await openPage(`${url}?lang=${lang}`, { viewport: { width: 1920, height: 900 } });
@@ -145,6 +153,14 @@ test('titles and current values of the alarm list and the journal are complete, 
                 await resize(page, { width: 1920, height: 900 });
             }
             await page.locator('#alarms-tab').click();
+            await showLater(page);
+            for (const width of [1920, 1280]) {
+                await resize(page, { width, height: 900 });
+                assert.deepEqual(await hiddenColumns(page, 'alarms'), { hidden: [], cut: [], untitled: false, scrolls: false },
+                    `${lang}, ${width}, alarms of an earlier day`);
+                assert.ok((await page.locator('#alarms-list tr').first().boundingBox()).height <= 29);
+                await shoot(page, `columns-${lang}-earlier-${width}`);
+            }
             for (const width of [412, 390, 375, 360]) {
                 await resize(page, { width, height: 844 });
                 const [needed, room] = await page.locator('#alarms-list td[data-col=state]').first().evaluate((cell) => {
