@@ -102,34 +102,44 @@ float faded(float distance_m, float near_m)
     return left * left;
 }
 
-// Returns the value interpolated between sensors at the fragment, and flags. x: value; y, z, w: 1 if it has no data, is
-// uncertain, has no alarm limits; else 0.
-vec4 reference_field()
+// Distances in metres from the fragment to the nearest usable sensor, to the nearest lost one, and to the nearest one without alarm
+// limits. FAR: no such sensor.
+struct Nearest {
+    float usable_m, lost_m, no_limits_m;
+};
+
+// Sums over all usable sensors: weight times value, weight, and weight of sensors of quality Uncertain.
+struct Sums {
+    float values, weights, marked;
+};
+
+Nearest nearest_sensors(Spot spot)
 {
-    Spot spot = spot_here();
-    float near_m = FAR, lost_m = FAR, no_limits_m = FAR, top = 0.0;
+    Nearest nearest = Nearest(FAR, FAR, FAR);
     for (int i = 0; i < sensors.length(); i++) {
         if ((sensors[i].state & 1u) == 0u)
             continue;
         float d = distance_to(i, spot);
         if ((sensors[i].state & 2u) != 0u)
-            near_m = min(near_m, d);
+            nearest.usable_m = min(nearest.usable_m, d);
         else if ((sensors[i].state & 8u) != 0u)
-            no_limits_m = min(no_limits_m, d);
+            nearest.no_limits_m = min(nearest.no_limits_m, d);
         else
-            lost_m = min(lost_m, d);
+            nearest.lost_m = min(nearest.lost_m, d);
     }
-    if (choice.w == 1)
-        return vec4(near_m, near_m < FAR ? 0.0 : 1.0, 0.0, 0.0);
-    bool reached = near_m < FAR && near_m <= numbers.z;
-    float limit_m = min(max(near_m, numbers.z), 0.5 * FAR);
+    return nearest;
+}
+
+Sums sums_of(Spot spot, float near_m)
+{
+    float limit_m = min(max(near_m, numbers.z), 0.5 * FAR), top = 0.0;
     // computes `top`, the largest exponent of all sensors; Algorithm 1 subtracts it from all exponents, so that weights do not overflow
     for (int i = 0; choice.x != 0 && i < sensors.length(); i++) {
         float d = distance_to(i, spot);
         if ((sensors[i].state & 2u) != 0u && d <= limit_m)
             top = max(top, nearness(d) * sensors[i].place_m.w);
     }
-    float sum = 0.0, weights = 0.0, marked = 0.0;
+    Sums sums = Sums(0.0, 0.0, 0.0);
     for (int i = 0; i < sensors.length(); i++) {
         float d = distance_to(i, spot), strength = sensors[i].place_m.w;
         if ((sensors[i].state & 2u) == 0u || d > limit_m)
@@ -137,18 +147,69 @@ vec4 reference_field()
         float near = nearness(d);
         float weight = choice.x != 0 ? exp(near * strength - top) : d <= near_m ? strength : strength * pow(near_m / d, numbers.x);
         weight *= faded(d, near_m);
-        sum += sensors[i].value * weight * (choice.x != 0 && sensors[i].decay > 0.0 ? pow(near, sensors[i].decay) : 1.0);
-        weights += weight;
-        marked += (sensors[i].state & 4u) != 0u ? weight : 0.0;
+        sums.values += sensors[i].value * weight * (choice.x != 0 && sensors[i].decay > 0.0 ? pow(near, sensors[i].decay) : 1.0);
+        sums.weights += weight;
+        sums.marked += (sensors[i].state & 4u) != 0u ? weight : 0.0;
     }
+    return sums;
+}
+
+#ifdef PIXEL_FIELD
+// Finds the nearest sensors and computes the sums in one pass over all sensors, for weights of strength / distance^2.
+Nearest inverse_square_sums(vec3 place, out Sums sums)
+{
+    vec3 squares = vec3(FAR); // squared distances to the usable, lost and no-limits sensor nearest to the fragment
+    sums = Sums(0.0, 0.0, 0.0);
+    for (int i = 0; i < sensors.length(); i++) {
+        vec3 away = place - sensors[i].place_m.xyz;
+        float square = dot(away, away);
+        uint state = sensors[i].state;
+        if ((state & 2u) != 0u) {
+            float weight = sensors[i].place_m.w / max(square, 1e-24);
+            squares.x = min(squares.x, square);
+            sums.values += sensors[i].value * weight;
+            sums.weights += weight;
+            sums.marked += (state & 4u) != 0u ? weight : 0.0;
+        } else if ((state & 8u) != 0u)
+            squares.z = min(squares.z, square);
+        else if ((state & 1u) != 0u)
+            squares.y = min(squares.y, square);
+    }
+    return Nearest(squares.x < FAR ? sqrt(squares.x) : FAR, squares.y < FAR ? sqrt(squares.y) : FAR,
+                   squares.z < FAR ? sqrt(squares.z) : FAR);
+}
+#endif
+
+// Returns the value interpolated between sensors at the fragment, and flags. x: value; y, z, w: 1 if it has no data, is
+// uncertain, has no alarm limits; else 0.
+vec4 reference_field()
+{
+    Spot spot = spot_here();
+    Nearest nearest;
+    Sums sums = Sums(0.0, 0.0, 0.0);
+#ifdef PIXEL_FIELD
+    bool inverse_square = choice.x == 0 && numbers.x == 2.0 && isinf(numbers.z);
+    if (inverse_square)
+        nearest = inverse_square_sums(spot.place, sums);
+    else
+#endif
+        nearest = nearest_sensors(spot);
+    float near_m = nearest.usable_m, lost_m = nearest.lost_m, no_limits_m = nearest.no_limits_m;
+    if (choice.w == 1)
+        return vec4(near_m, near_m < FAR ? 0.0 : 1.0, 0.0, 0.0);
+    bool reached = near_m < FAR && near_m <= numbers.z;
+#ifdef PIXEL_FIELD
+    if (!inverse_square)
+#endif
+        sums = sums_of(spot, near_m);
     bool lost = lost_m < near_m, filled = reached && lost && choice.z != 0;
     bool no_limits = no_limits_m < near_m && no_limits_m <= lost_m && no_limits_m <= numbers.z;
     bool no_data = !no_limits && !(reached && (!lost || filled));
-    bool uncertain = filled || (marked > 0.0 && 2.0 * marked >= weights);
-    float value = weights > 0.0 ? sum / weights : 0.0;
+    bool uncertain = filled || (sums.marked > 0.0 && 2.0 * sums.marked >= sums.weights);
+    float value = sums.weights > 0.0 ? sums.values / sums.weights : 0.0;
     if (choice.x != 0)
-        value = value * more.x + (weights > 0.0 ? numbers.w : 0.0);
-    value = weights > 0.0 ? value : numbers.w;
+        value = value * more.x + (sums.weights > 0.0 ? numbers.w : 0.0);
+    value = sums.weights > 0.0 ? value : numbers.w;
     if (choice.w == 5) {
         float far = min(near_m, 1e6 * more.z) / more.z;
         value = min(more.w * exp(min(0.5 * far * far, 80.0)), numbers.w);

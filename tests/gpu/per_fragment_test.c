@@ -181,7 +181,8 @@ TEST_WITH(test_more_than_512_sensors, set_up, tear_down)
                       way & 2 ? "euclidean" : "geodesic", tally.worst, tally.most_off, tally.no_data, tally.flags_differ);
         assert_int_equal(tally.flags_differ, 0);
         assert_true(tally.no_data > 0 && tally.no_data < SAMPLES / 4);
-        assert_true(tally.worst <= TOLERANCE / 10 && tally.most_off <= 1);
+        /* a GPU interpolates positions less exactly than llvmpipe */
+        assert_true(tally.worst <= (rig.gl->software ? TOLERANCE / 10 : TOLERANCE) && tally.most_off <= 1);
         frame_unref(&frame);
     }
     mem_free(numbers);

@@ -433,8 +433,12 @@ TEST_WITH(test_what_is_kept_has_a_bound, reset, NULL)
     draw_much();
     renderer_bound_memory(stand.renderer, bound);
     renderer_measure_memory(stand.renderer, bytes);
-    assert_true(full[STORE_PICTURES] > bound && full[STORE_TARGETS] > 0);
-    assert_true(bytes[STORE_PICTURES] <= bound && bytes[STORE_TARGETS] < full[STORE_TARGETS]);
+    /* only the software renderer keeps visibility buffers and targets of earlier views */
+    if (stand.rig->gl->software) {
+        assert_true(full[STORE_PICTURES] > bound && full[STORE_TARGETS] > 0);
+        assert_true(bytes[STORE_TARGETS] < full[STORE_TARGETS]);
+    }
+    assert_true(bytes[STORE_PICTURES] <= bound);
     assert_true(bytes[STORE_LIGHT] <= full[STORE_LIGHT] && bytes[STORE_ROOM] <= full[STORE_ROOM]);
     renderer_bound_memory(stand.renderer, (size_t)1 << 30);
 }

@@ -20,6 +20,7 @@ struct draw_instance { /* as in shaders/instance.glsl */
 
 struct draw_batch_state {
     GLuint program;
+    GLuint depth_program; /* draws the batch's depth before its colours; 0: the depth is not drawn first */
     const struct gl_model *model;
     /* buffers (pool.h) with baked light and with field values per vertex; field NULL: the asset has no sensor group or no reading */
     const struct pool_page *light, *field;

@@ -15,6 +15,9 @@ enum { MATERIAL = 2, TEXTURES = 3 };
    to fractions of a pixel, differently for each triangle. The depths of coincident faces therefore differ by a fraction of the
    faces' depth slope. */
 static const double FORWARD_SLOPE = 0.05;
+/* A field that each pixel computes from at least this many sensors is drawn in two passes: first depth alone, then colours. The
+   sums over all sensors are then computed only for visible surfaces. */
+enum { DEPTH_FIRST_SENSORS = 16 };
 enum { UNIT_COLORMAP = 0, UNIT_RAMPS = 1, UNIT_SUN_MAP = 2, UNIT_MAPS = 3, UNIT_LIGHTS = 12, UNIT_SCALARS = 13, UNIT_LINES = 15 };
 
 /* Returns whether a variant of the shader program is compiled at start because most plants use it; other variants are compiled
@@ -60,6 +63,8 @@ bool surface_pass_init(struct surface_pass *pass, struct log *log)
 
 void surface_pass_finish(struct surface_pass *pass)
 {
+    for (int i = 0; i < 4; i++)
+        program_destroy(&pass->depth_programs[i / 2][i % 2]);
     occlusion_finish(&pass->occlusion);
     draw_batches_finish(&pass->opaque);
     draw_batches_finish(&pass->blended);
@@ -119,6 +124,22 @@ static GLuint choose_program(struct surface_pass *pass, const struct frame_conte
     GLuint *program = &pass->programs[kind][tier][variant];
     if (!*program)
         *program = make_program(pass->log, kind, tier, variant);
+    return *program;
+}
+
+/* Returns the shader program that writes only the depth of a batch with the features `variant`. 0: the batch has holes, its field
+   is interpolated or has few sensors, or compiling failed (logged); its depth is then not drawn first. */
+static GLuint choose_depth_program(struct surface_pass *pass, const struct frame_context *context, const struct fields_entry *field,
+                                   int variant)
+{
+    if (!has_pixel_field(context, field) || field->pixels.count < DEPTH_FIRST_SENSORS || variant & SURFACE_TEXTURED)
+        return 0;
+    int tier = context->view->tier;
+    bool cut = variant & SURFACE_CLIP;
+    GLuint *program = &pass->depth_programs[tier][cut];
+    if (!*program)
+        *program = program_create(pass->log, program_params(.vertex = tier == TIER_REFINED ? "refined.vert" : "preview.vert",
+                                                            .fragment = "depth.frag", .defines = cut ? "#define CLIP\n" : ""));
     return *program;
 }
 
@@ -191,6 +212,7 @@ static void gather(struct surface_pass *pass, struct draw_batches *batches, cons
         state.program = choose_program(pass, context, field, variant);
         if (!state.program)
             continue;
+        state.depth_program = blend ? 0 : choose_depth_program(pass, context, field, variant);
         /* assets that a section plane cuts show their inner side, so back faces are drawn */
         state.two_sided = submesh->double_sided || state.cut;
         state.material = looks_at_material(context, variant) ? (int)submesh->material : -1;
@@ -251,6 +273,16 @@ static void set_state(const struct draw_batches *batches, const struct frame_con
         set_material(context, is);
 }
 
+/* Draws the depth of a batch, and leaves the batch's own program in use. */
+static void draw_depth(const struct draw_batches *batches, const struct draw_batch *batch)
+{
+    glUseProgram(batch->state.depth_program);
+    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    draw_batches_draw(batches, batch);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glUseProgram(batch->state.program);
+}
+
 /* Draws the batches first..end-1. */
 static void draw_batch_range(const struct draw_batches *batches, const struct frame_context *context, size_t first, size_t end)
 {
@@ -262,6 +294,8 @@ static void draw_batch_range(const struct draw_batches *batches, const struct fr
             continue;
         set_state(batches, context, is, was);
         was = is;
+        if (is->depth_program)
+            draw_depth(batches, batch);
         if (is->alone >= 0 && !context->reference)
             reference_bind_pixel_sensors(context->fields[is->alone]->sensors);
         if (is->alone < 0 || !context->reference)

@@ -41,6 +41,7 @@ struct surface_pass {
     /* number of triangles submitted to GL so far, excluding culled ones; the caller sets it to 0 for each frame */
     int triangles;
     GLuint programs[SURFACE_KINDS][2][SURFACE_VARIANTS]; /* [kind][refined][features]; 0: not compiled yet */
+    GLuint depth_programs[2][2]; /* programs that write only depth: [refined][with section planes]; 0: not compiled yet */
 };
 
 /* Compiles those programs that draw pictures from values at vertices (SURFACE_PICTURE); others are compiled on first use. On
