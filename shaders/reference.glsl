@@ -12,8 +12,9 @@ layout(std430, binding = 5) readonly buffer Sensors {
     // x: exponent of interpolation shepard; y: radius in metres of Algorithm 1; z: reach in metres, the distance beyond which a
     // sensor has no influence; w: lower end MIN of the group's range
     vec4 numbers;
-    // x: factor MAX - MIN of the range, which scales Algorithm 1's sum to a value, or 0; y: vertex count of the asset; z, w
-    // (only if the smallest visible hot spot is shown): size of a hot spot and the value at which it is seen
+    // x: factor MAX - MIN of the range, which scales Algorithm 1's sum to a value, or 0; y: vertex count of the asset, or with
+    // PIXEL_FIELD the number of usable sensors, which are the first ones in `sensors`; z, w (only if the smallest visible hot
+    // spot is shown): size of a hot spot and the value at which it is seen
     vec4 more;
     // x: 1: Algorithm 1, 0: shepard; y: 1: geodesic distances; z: 1: areas around lost sensors are filled in; w: what is shown (1:
     // distance, 5: hot spot)
@@ -160,20 +161,22 @@ Nearest inverse_square_sums(vec3 place, out Sums sums)
 {
     vec3 squares = vec3(FAR); // squared distances to the usable, lost and no-limits sensor nearest to the fragment
     sums = Sums(0.0, 0.0, 0.0);
-    for (int i = 0; i < sensors.length(); i++) {
+    int usable = int(more.y);
+    for (int i = 0; i < usable; i++) {
+        Sensor sensor = sensors[i];
+        vec3 away = place - sensor.place_m.xyz;
+        float square = dot(away, away), weight = sensor.place_m.w / max(square, 1e-24);
+        squares.x = min(squares.x, square);
+        sums.values += sensor.value * weight;
+        sums.weights += weight;
+        sums.marked += (sensor.state & 4u) != 0u ? weight : 0.0;
+    }
+    for (int i = usable; i < sensors.length(); i++) {
         vec3 away = place - sensors[i].place_m.xyz;
-        float square = dot(away, away);
-        uint state = sensors[i].state;
-        if ((state & 2u) != 0u) {
-            float weight = sensors[i].place_m.w / max(square, 1e-24);
-            squares.x = min(squares.x, square);
-            sums.values += sensors[i].value * weight;
-            sums.weights += weight;
-            sums.marked += (state & 4u) != 0u ? weight : 0.0;
-        } else if ((state & 8u) != 0u)
-            squares.z = min(squares.z, square);
-        else if ((state & 1u) != 0u)
-            squares.y = min(squares.y, square);
+        if ((sensors[i].state & 8u) != 0u)
+            squares.z = min(squares.z, dot(away, away));
+        else
+            squares.y = min(squares.y, dot(away, away));
     }
     return Nearest(squares.x < FAR ? sqrt(squares.x) : FAR, squares.y < FAR ? sqrt(squares.y) : FAR,
                    squares.z < FAR ? sqrt(squares.z) : FAR);

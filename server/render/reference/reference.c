@@ -13,7 +13,7 @@ enum { SENSORS_PER_TEXEL = 4 };
 
 struct sensors_head { /* header of the GPU buffer of sensors, in the layout std430; must match shaders/reference.glsl */
     float power, radius_m, reach_m, empty;
-    float range, vertices, hot_spot_m, seen;
+    float range, vertices_or_usable, hot_spot_m, seen;
     int32_t paper, geodesic, fill, show;
 };
 struct sensor_block {
@@ -56,7 +56,7 @@ static struct sensors_head head_of(const struct reference *reference, int asset,
         .reach_m = (float)params->reach_m,
         .empty = around_0 ? 0 : (float)group->min,
         .range = places ? 1 : (float)(group->max - group->min),
-        .vertices = (float)reference->gpu_scene->of_asset[asset]->file->view.header->vertex_count,
+        .vertices_or_usable = (float)reference->gpu_scene->of_asset[asset]->file->view.header->vertex_count,
         .paper = params->interpolation == INTERPOLATION_PAPER,
         /* uses the geodesic distances of the asset file even if the view uses heat distances, which the file does not contain */
         .geodesic = params->distance != DISTANCE_EUCLIDEAN,
@@ -105,11 +105,14 @@ GLuint reference_pixel_sensors(struct log *log, const struct pixel_field *field)
                                    .paper = field->paper,
                                    .fill = field->fill,
                                    .show = shows[field->show] };
+    int usable = 0, lost = field->count; /* usable sensors are stored from the first block on, others from the last one on */
     for (int i = 0; i < field->count; i++) {
         const struct pixel_sensor *from = &field->sensors[i];
-        blocks[i] = (struct sensor_block){ .strength = from->strength, .decay = from->decay, .value = from->value, .state = from->state };
-        memcpy(blocks[i].place_m, from->place_m, sizeof(from->place_m));
+        struct sensor_block *to = &blocks[from->state & PIXEL_USABLE ? usable++ : --lost];
+        *to = (struct sensor_block){ .strength = from->strength, .decay = from->decay, .value = from->value, .state = from->state };
+        memcpy(to->place_m, from->place_m, sizeof(from->place_m));
     }
+    head->vertices_or_usable = (float)usable;
     GLuint buffer = mesh_buffer(log, "sensors for the per-fragment field", bytes, head, 0);
     mem_free(head);
     return buffer;
