@@ -138,6 +138,9 @@ static void test_plant(const char *path, const char *name)
     for (int way = 0; way < 4; way++) {
         struct soft_values_tally tally = { 0 };
         bool refined = way & 1;
+        /* in a refined frame, a GPU shows the mean colour of a pixel's samples, not the colour at its centre */
+        if (refined && !rig.gl->software)
+            continue;
         compare_plant(&site, way, &tally);
         print_message("# %s, %s: %d pixels, %d of another colour (by %d at most), %d of none; at silhouettes %d, %d others\n",
                       refined ? "refined" : "soft", way & 2 ? "paper, euclidean" : "shepard, geodesic", tally.within, tally.off, tally.most,
