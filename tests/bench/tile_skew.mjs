@@ -5,10 +5,11 @@
 import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, afterEach, before, test } from 'node:test';
+import { after, afterEach, test } from 'node:test';
 import { setTimeout as sleep } from 'node:timers/promises';
 import { browserOn, SCREENSHOTS } from '../e2e/support/browser.mjs';
 import { PlainClient } from '../e2e/support/plain_client.mjs';
+import { setUp } from '../e2e/support/set_up.mjs';
 import { missing, TinyPlant } from '../e2e/support/tiny_plant.mjs';
 import { missingDisplay, savePng, startDisplay } from '../e2e/support/x_display.mjs';
 
@@ -21,9 +22,7 @@ const boxes = [-1, 1].flatMap((side) => PLACES_M.map((x, i) => ({ id: `${side < 
 const screens = [], ending = [];
 let plant;
 
-before(async () => {
-    if (options.skip)
-        return;
+setUp(options.skip, async () => {
     plant = await TinyPlant.create();
     writeFileSync(plant.file, `plant:
   name: Numbers

@@ -7,9 +7,10 @@ import { chmodSync, copyFileSync, existsSync, readFileSync, unlinkSync, writeFil
 import { request } from 'node:https';
 import { connect as connectTls } from 'node:tls';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { encodeFrame, http, PlainClient } from './support/plain_client.mjs';
 import { freePort } from './support/ports.mjs';
+import { setUp } from './support/set_up.mjs';
 import { notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 import { until } from './support/until.mjs';
 
@@ -34,17 +35,14 @@ function makeTokens() {
     return made;
 }
 
-before(async () => {
-    if (skip)
-        return;
-    plant = await TinyPlant.create();
+setUp(skip, async (own) => {
+    plant = own(await TinyPlant.create());
     assert.equal(plant.prepare().code, 0);
     tokensFile = path('tokens');
     tokens = makeTokens();
     makeCertificate('first', 'plant.example');
     makeCertificate('second', 'other.example');
 });
-after(() => plant?.destroy());
 
 // Starts a daemon with --behind-proxy: it grants connections from loopback no rights, as if it listened on an address that
 // other machines can reach.

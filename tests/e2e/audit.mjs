@@ -6,10 +6,11 @@ import { spawnSync } from 'node:child_process';
 import { existsSync, mkdirSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { createServer } from 'node:tls';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { after, test } from 'node:test';
 import { http, PlainClient } from './support/plain_client.mjs';
 import { freePort } from './support/ports.mjs';
 import { promise } from './support/promise.mjs';
+import { setUp } from './support/set_up.mjs';
 import { sweep } from './support/sweep.mjs';
 import { notBuilt, runProgram, sleep, TinyPlant } from './support/tiny_plant.mjs';
 import { until } from './support/until.mjs';
@@ -94,9 +95,7 @@ const whole = () => until('a good trail', () => verify().code === 0, 90, () => v
 const isGood = (value) => until(`plantcast_audit_good ${value}`, async () =>
     new RegExp(`^plantcast_audit_good ${value}$`, 'm').test((await ask('/metrics', tokens.viewer)).body.toString()));
 
-before(async () => {
-    if (skip)
-        return;
+setUp(skip, async () => {
     plant = await TinyPlant.create();
     plant.addAlarms();
     assert.equal(plant.prepare().code, 0);

@@ -4,8 +4,9 @@
 import assert from 'node:assert/strict';
 import { appendFileSync, existsSync, mkdirSync, readdirSync, readFileSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { PlainClient } from './support/plain_client.mjs';
+import { setUp } from './support/set_up.mjs';
 import { notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 import { until } from './support/until.mjs';
 
@@ -14,10 +15,8 @@ const skip = notBuilt();
 const BEGIN_S = Math.floor(Date.now() / 1000) - 40 * 86400;
 let plant;
 
-before(async () => {
-    if (skip)
-        return;
-    plant = await TinyPlant.create();
+setUp(skip, async (own) => {
+    plant = own(await TinyPlant.create());
     const row = (_, i) => `TI-1,${BEGIN_S + i * 860},${(50 + 40 * Math.sin(i / 9)).toFixed(3)}`;
     const lines = ['Tag,Time,Value', ...Array.from({ length: 4000 }, row)];
     writeFileSync(join(plant.folder, 'series.csv'), `${lines.join('\n')}\n`);
@@ -27,7 +26,6 @@ before(async () => {
     await plant.startSim();
     await plant.startDaemon();
 });
-after(() => plant?.destroy());
 
 const folder = (name) => join(plant.folder, name);
 const exported = (file, tag) => {

@@ -6,10 +6,11 @@ import { spawn, spawnSync } from 'node:child_process';
 import { cpSync, existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { hostname } from 'node:os';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { after, test } from 'node:test';
 import { BareRoot, missingBareRoot } from './support/bare_root.mjs';
 import { folderOfTests } from './support/folders.mjs';
 import { freePort } from './support/ports.mjs';
+import { setUp } from './support/set_up.mjs';
 import { BIN, notBuilt, TinyPlant } from './support/tiny_plant.mjs';
 
 const has = (program) => spawnSync('which', [program]).status === 0;
@@ -61,9 +62,7 @@ const listing = (root) => ok(root.run(`find ${ETC} /etc/plantcast/mail.password 
     "! -type d -exec sha256sum {} ';' -o -type d -printf '\\n'"))
     .split('\n').map((line) => line.replace(/ \d+ (?=root|plantcast)/, ' ')).sort().join('\n');
 
-before(async () => {
-    if (options.skip)
-        return;
+setUp(options.skip, async () => {
     plant = await TinyPlant.create();
     first = new BareRoot(folder);
     port = await freePort();

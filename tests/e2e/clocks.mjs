@@ -3,25 +3,23 @@
 // must follow the core's clock.
 import assert from 'node:assert/strict';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { openPage, shoot, waitForHealth, waitForPicture } from './support/browser.mjs';
 import { missingClocks, withClockOff } from './support/clocks.mjs';
 import { Node, Nodes, until } from './support/nodes.mjs';
+import { setUp } from './support/set_up.mjs';
 import { notBuilt } from './support/tiny_plant.mjs';
 
 const HOUR_S = 3600;
 const options = { skip: notBuilt() || (missingClocks() ?? false), timeout: 240000 };
 let nodes;
 
-before(async () => {
-    if (options.skip)
-        return;
+setUp(options.skip, async (own) => {
     // slowDevice: the daemon waits longer for the device's answers. Otherwise readings would become Bad on a busy machine, and
     // a picture without any Good reading has no age.
-    nodes = await Nodes.create({ slowDevice: true });
+    nodes = own(await Nodes.create({ slowDevice: true }));
     await nodes.plant.set({ 'TI-1': 20, 'TI-2': 20, 'PI-1': 5 });
 });
-after(() => nodes?.destroy());
 
 // Makes the page's clock wrong before its scripts run.
 const wrongDate = (ms) => {

@@ -6,8 +6,9 @@ import { spawn, spawnSync } from 'node:child_process';
 import { appendFileSync, copyFileSync, existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { connect, createServer } from 'node:net';
 import { join } from 'node:path';
-import { after, afterEach, before, test } from 'node:test';
+import { after, afterEach, test } from 'node:test';
 import { PlainClient } from './support/plain_client.mjs';
+import { setUp } from './support/set_up.mjs';
 import { BIN, notBuilt, TinyPlant } from './support/tiny_plant.mjs';
 
 const skip = notBuilt();
@@ -41,9 +42,7 @@ const runIn = (folder, ...args) => new Promise((done) => {
 
 const run = (...args) => runIn(BIN, ...args);
 
-before(async () => {
-    if (skip)
-        return;
+setUp(skip, async () => {
     plant = await TinyPlant.create();
     assert.equal(plant.prepare().code, 0);
     cert = join(plant.folder, 'cert.pem');

@@ -2,8 +2,9 @@
 // Checks each statement of PROTOCOL.md against a real daemon, with a client written from that page alone
 // (support/plain_client.mjs). The answers to fits, picks and errors are tested in daemon.mjs.
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { FLAG, get, http, PlainClient } from './support/plain_client.mjs';
+import { setUp } from './support/set_up.mjs';
 import { notBuilt, TinyPlant } from './support/tiny_plant.mjs';
 import { until } from './support/until.mjs';
 
@@ -13,17 +14,14 @@ const CAMERA = { eye: [5, -6, 4], target: [1, 0, 0] };
 const BEGAN_US = Date.now() * 1000;
 let plant;
 
-before(async () => {
-    if (skip)
-        return;
-    plant = await TinyPlant.create();
+setUp(skip, async (own) => {
+    plant = own(await TinyPlant.create());
     plant.keepFresh();
     await plant.start();
     await plant.set({ 'TI-1': 80, 'TI-2': 20, 'PI-1': 5 });
     await until('good readings', async () => JSON.parse((await get(plant.port, '/api/v1/tags')).body).tags
         .every(({ quality_name: quality }) => quality === 'Good'));
 });
-after(() => plant?.destroy());
 
 test('the server picks its protocol version from several, and refuses unknown versions by name', { skip }, async () => {
     (await PlainClient.open(plant.port, { protocol: 'plantcast.v2, plantcast.v1' })).close();

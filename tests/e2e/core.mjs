@@ -5,25 +5,23 @@ import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { Node, Nodes, sleep, until } from './support/nodes.mjs';
 import { PlainClient } from './support/plain_client.mjs';
 import { otherVersion } from './support/other_version.mjs';
 import { promise } from './support/promise.mjs';
+import { setUp } from './support/set_up.mjs';
 import { notBuilt, Program, runProgram } from './support/tiny_plant.mjs';
 
 const options = { skip: notBuilt(), timeout: 300000 };
 let nodes, core, a, b;
 
-before(async () => {
-    if (options.skip)
-        return;
-    nodes = await Nodes.create({ slowDevice: true });
+setUp(options.skip, async (own) => {
+    nodes = own(await Nodes.create({ slowDevice: true }));
     core = await nodes.core();
     [a, b] = await Promise.all([nodes.renderer('a', core), nodes.renderer('b', core)]);
     await nodes.plant.set({ 'TI-1': 80.25, 'TI-2': 20, 'PI-1': 5 });
 });
-after(() => nodes?.destroy());
 
 const alarm = async (node, state, name = 'TI-1') => {
     const { alarms } = await (await node.fetch('/api/v1/alarms')).json();

@@ -4,12 +4,13 @@
 import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { isDeepStrictEqual } from 'node:util';
 import { openPage, settle, shoot, travel, waitForHealth, waitForPicture } from './support/browser.mjs';
 import { missingClocks, withClockOff } from './support/clocks.mjs';
 import { Node, Nodes, sleep, until } from './support/nodes.mjs';
 import { FLAG, PlainClient } from './support/plain_client.mjs';
+import { setUp } from './support/set_up.mjs';
 import { notBuilt, runProgram } from './support/tiny_plant.mjs';
 
 const options = { skip: notBuilt() || (missingClocks() ?? false), timeout: 240000 };
@@ -27,10 +28,8 @@ function series() {
     return `${lines.join('\n')}\n`;
 }
 
-before(async () => {
-    if (options.skip)
-        return;
-    nodes = await Nodes.create();
+setUp(options.skip, async (own) => {
+    nodes = own(await Nodes.create());
     writeFileSync(join(nodes.plant.folder, 'series.csv'), series());
     const imported = runProgram('plantcast', ['history', 'import', nodes.plant.file, join(nodes.plant.folder, 'series.csv')]);
     assert.equal(imported.code, 0, imported.err);
@@ -39,7 +38,6 @@ before(async () => {
     renderer = await nodes.renderer('far', core);
     await until('readings', async () => (await renderer.tags())['TI-1'].quality_name === 'Good');
 });
-after(() => nodes?.destroy());
 
 const body = async (node, path, token) => {
     const answer = await node.fetch(path, token);

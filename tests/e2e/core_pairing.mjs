@@ -3,9 +3,10 @@
 // admits it even while the core cannot be reached.
 import assert from 'node:assert/strict';
 import { appendFileSync } from 'node:fs';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { Nodes, until } from './support/nodes.mjs';
 import { promise } from './support/promise.mjs';
+import { setUp } from './support/set_up.mjs';
 import { notBuilt, runProgram } from './support/tiny_plant.mjs';
 
 const options = { skip: notBuilt(), timeout: 240000 };
@@ -18,17 +19,14 @@ walls:
 const SECRET = `pc_${'5'.repeat(64)}`;
 let nodes, core, renderer, engineer;
 
-before(async () => {
-    if (options.skip)
-        return;
-    nodes = await Nodes.create();
+setUp(options.skip, async (own) => {
+    nodes = own(await Nodes.create());
     appendFileSync(nodes.plant.file, WALLS);
     assert.equal(nodes.plant.prepare().code, 0);
     engineer = runProgram('plantcast', ['token', 'add', nodes.tokenFile, '--role', 'engineer', '--name', 'eve']).out.trim();
     core = await nodes.core();
     renderer = await nodes.renderer('a', core);
 });
-after(() => nodes?.destroy());
 
 const ask = async (node, display = 1, secret = SECRET) => {
     const answer = await fetch(`http://127.0.0.1:${node.port}/api/v1/pair?wall=room&display=${display}`,

@@ -2,25 +2,23 @@
 // A core that is reloaded takes its renderers along: they load the same files at the same time and switch when the core does.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { Nodes, until } from './support/nodes.mjs';
 import { promise } from './support/promise.mjs';
+import { setUp } from './support/set_up.mjs';
 import { notBuilt } from './support/tiny_plant.mjs';
 
 const options = { skip: notBuilt(), timeout: 240000 };
 const BLIND_MS = 10000;
 let nodes, core, renderer;
 
-before(async () => {
-    if (options.skip)
-        return;
-    nodes = await Nodes.create({ slowDevice: true });
+setUp(options.skip, async (own) => {
+    nodes = own(await Nodes.create({ slowDevice: true }));
     await nodes.plant.set({ 'TI-1': 50, 'TI-2': 20, 'PI-1': 5 });
     core = await nodes.core();
     renderer = await nodes.renderer('r', core);
     await until('readings', async () => (await renderer.tags())['TI-1'].quality_name === 'Good');
 });
-after(() => nodes?.destroy());
 
 const change = (from, to) => writeFileSync(nodes.plant.file, readFileSync(nodes.plant.file, 'utf8').replace(from, to));
 const configuration = async (node) => (await (await node.fetch('/metrics')).text())

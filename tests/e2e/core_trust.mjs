@@ -4,12 +4,13 @@
 import assert from 'node:assert/strict';
 import { chmodSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { linesOf } from './support/lines.mjs';
 import { IdentityProvider } from './support/identity_provider.mjs';
 import { Nodes, until } from './support/nodes.mjs';
 import { PlainClient } from './support/plain_client.mjs';
 import { freePort } from './support/ports.mjs';
+import { setUp } from './support/set_up.mjs';
 import { notBuilt, runProgram } from './support/tiny_plant.mjs';
 
 const options = { skip: notBuilt(), timeout: 120000 };
@@ -25,12 +26,10 @@ function openidFile(name, port, more = '') {
     return path(name);
 }
 
-before(async () => {
-    if (options.skip)
-        return;
-    nodes = await Nodes.create({ slowDevice: true });
+setUp(options.skip, async (own) => {
+    nodes = own(await Nodes.create({ slowDevice: true }));
     nodes.trustsLocal = false;
-    provider = new IdentityProvider();
+    provider = own(new IdentityProvider());
     await provider.listen();
     writeFileSync(path('secret'), 'geheim +\n');
     chmodSync(path('secret'), 0o600);
@@ -43,10 +42,6 @@ before(async () => {
     await nodes.plant.tell('set TI-1 95.5');
     await until('readings and an alarm', async () => renderer.alarm('TI-1', nodes.tokens.viewer));
     identity = await learnIdentity();
-});
-after(async () => {
-    await provider?.close();
-    await nodes?.destroy();
 });
 
 const state = async () => (await core.alarm('TI-1', nodes.tokens.viewer))?.state;

@@ -5,10 +5,11 @@ import { spawnSync } from 'node:child_process';
 import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { connect, createServer } from 'node:net';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { gunzipSync, inflateRawSync } from 'node:zlib';
 import { encodeFrame, get, http, PlainClient } from './support/plain_client.mjs';
 import { promise } from './support/promise.mjs';
+import { setUp } from './support/set_up.mjs';
 import { BIN, notBuilt, runProgram, sleep, TinyPlant } from './support/tiny_plant.mjs';
 import { until } from './support/until.mjs';
 
@@ -16,17 +17,14 @@ const VECTORS = 'protocol/vectors/client';
 const skip = notBuilt();
 let plant;
 
-before(async () => {
-    if (skip)
-        return;
-    plant = await TinyPlant.create();
+setUp(skip, async (own) => {
+    plant = own(await TinyPlant.create());
     const prepared = plant.prepare();
     assert.equal(prepared.code, 0, prepared.err);
     await plant.startSim();
     await plant.set({ 'TI-1': 80, 'TI-2': 20, 'PI-1': 5 }); // constant values
     await plant.startDaemon();
 });
-after(() => plant?.destroy());
 
 const valueOf = (message, index) => message.values.find((row) => row[0] === index);
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The first camera move on a new page that is still busy: its pictures are as good as later ones.
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { FLYING, grab, openPage, settle, shoot, waitForPicture } from './support/browser.mjs';
 import { similarity } from './support/pixels.mjs';
 import { missing, startPlant } from './support/plant.mjs';
+import { setUp } from './support/set_up.mjs';
 
 const why = missing();
 const options = { skip: why ?? false, timeout: 200000 };
@@ -26,18 +27,12 @@ const answerLate = (on) => on.route('**/busy?*', async (route) => {
     await route.fulfill({ body: '' });
 });
 
-before(async () => {
-    if (why)
-        return;
-    plant = await startPlant();
+setUp(why, async (own) => {
+    plant = own(await startPlant());
     const { tags } = await (await fetch(`${plant.url}api/v1/tags`)).json();
     await plant.freeze(tags.map(({ name }) => name));
-    browser = await openPage(plant.url, { ...SCREEN, ...FLYING }, BUSY, answerLate);
+    browser = own(await openPage(plant.url, { ...SCREEN, ...FLYING }, BUSY, answerLate));
     page = browser.page;
-});
-after(async () => {
-    await browser?.close();
-    await plant?.stop();
 });
 
 const shown = () => page.evaluate(() => {

@@ -2,10 +2,11 @@
 // Many clients at once, well-behaved and misbehaving: measures what each costs the server and the other clients. SOAK_S sets
 // the duration in seconds, such as 1800 for a long run.
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { camera, median, metrics, Mover, openFiles, openMany, residentKb, sanitized, sleep } from './support/crowd.mjs';
 import { PlainClient } from './support/plain_client.mjs';
 import { Relay, relayMissing } from './support/relay.mjs';
+import { setUp } from './support/set_up.mjs';
 import { seed, sweep } from './support/sweep.mjs';
 import { missing, TinyPlant } from './support/tiny_plant.mjs';
 
@@ -15,14 +16,11 @@ const absent = [...missing(), relayMissing()].filter(Boolean);
 const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
 let plant, pid, stalled, stalledAt;
 
-before(async () => {
-    if (skip)
-        return;
-    plant = await TinyPlant.create();
+setUp(skip, async (own) => {
+    plant = own(await TinyPlant.create());
     await plant.start(...LIMITS.flatMap((limit) => ['--limit', limit]));
     pid = plant.daemon.child.pid;
 });
-after(() => plant?.destroy());
 
 test('a hundred viewers of one view cost one render, one encode and a hundred sends', { skip }, async (t) => {
     const names = ['plantcast_renders_total', 'plantcast_encodes_total', 'plantcast_frames_sent_total'];

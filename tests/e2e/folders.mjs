@@ -9,7 +9,8 @@ import {
 } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { after, test } from 'node:test';
+import { setUp } from './support/set_up.mjs';
 import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 
 const NOBODY = 65534, absent = missing();
@@ -17,9 +18,7 @@ const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : process.get
 let plant, root, state, history, secret;
 
 // The plant file is in a folder owned by root; tag list and history are in one owned by the daemon's user.
-before(async () => {
-    if (skip)
-        return;
+setUp(skip, async () => {
     plant = await TinyPlant.create();
     root = mkdtempSync(join(tmpdir(), 'plantcast-root-'));
     state = join(root, 'state');

@@ -4,8 +4,9 @@
 import assert from 'node:assert/strict';
 import { existsSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { browserOn, openPage, SCREENSHOTS, shoot, waitForPicture } from './support/browser.mjs';
+import { setUp } from './support/set_up.mjs';
 import { missing, startTiny } from './support/tiny_plant.mjs';
 import { missingDisplay, savePng, startDisplay } from './support/x_display.mjs';
 
@@ -28,15 +29,9 @@ walls:
 `;
 let plant, display;
 
-before(async () => {
-    if (why)
-        return;
-    plant = await startTiny(WALLS);
-    display = await startDisplay(WIDTH, HEIGHT);
-});
-after(async () => {
-    await display?.stop();
-    await plant?.stop();
+setUp(why, async (own) => {
+    plant = own(await startTiny(WALLS));
+    display = own(await startDisplay(WIDTH, HEIGHT));
 });
 
 // Waits until the watchdog's coloured band is visible on the display (wanted true) or has disappeared (false). Returns the

@@ -3,7 +3,7 @@
 // and no acknowledgement is lost.
 import assert from 'node:assert/strict';
 import { connect } from 'node:net';
-import { after, before, test } from 'node:test';
+import { after, test } from 'node:test';
 import { Operator } from '../long/host/operators.mjs';
 import { Haproxy, missingHaproxy } from './support/haproxy.mjs';
 import { Nodes, sleep, until } from './support/nodes.mjs';
@@ -11,15 +11,14 @@ import { get, PlainClient } from './support/plain_client.mjs';
 import { freePort } from './support/ports.mjs';
 import { CuttableLink } from './support/postgres_server.mjs';
 import { promise } from './support/promise.mjs';
+import { setUp } from './support/set_up.mjs';
 import { notBuilt } from './support/tiny_plant.mjs';
 
 const options = { skip: notBuilt() || (missingHaproxy() ?? false), timeout: 200000 };
 const VIEWERS = 40, MOST = 80, LEAST = 10, BACK_MS = 10000, BLIND_MS = 10000;
 let nodes, core, renderers, proxy, viewers, links;
 
-before(async () => {
-    if (options.skip)
-        return;
+setUp(options.skip, async () => {
     nodes = await Nodes.create({ slowDevice: true });
     core = await nodes.core(0, '--behind-proxy', '--host', 'plant.example');
     links = [await CuttableLink.open(core.port), await CuttableLink.open(core.port)];

@@ -2,12 +2,13 @@
 // HAProxy in front of two cores and a renderer: requests that only a core answers go to the leader, even after kill -9, and the
 // renderer's sessions survive.
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { Haproxy, missingHaproxy } from './support/haproxy.mjs';
 import { get, PlainClient } from './support/plain_client.mjs';
 import { freePort } from './support/ports.mjs';
 import { PostgresServer } from './support/postgres_server.mjs';
 import { promise } from './support/promise.mjs';
+import { setUp } from './support/set_up.mjs';
 import { kill, missingTwoCores, TAKE_OVER_MS, TwoCores, until } from './support/two_cores.mjs';
 
 const skip = missingTwoCores() || (missingHaproxy() ?? false), options = { skip, timeout: 240000 };
@@ -15,26 +16,18 @@ const CHECKS_MS = 1500; // the proxy checks its servers once a second
 const HOST = ['--behind-proxy', '--host', 'plant.example', '--host', '127.0.0.1'];
 let server, two, renderer, proxy, plain; // plain: a second HAProxy, which balances the two cores only and has no renderers
 
-before(async () => {
-    if (skip)
-        return;
-    server = await PostgresServer.start();
+setUp(skip, async (own) => {
+    server = own(await PostgresServer.start());
     server.makeDatabase('plants');
-    two = await TwoCores.create(server, '', HOST);
+    two = own(await TwoCores.create(server, '', HOST));
     await two.plant.set({ 'TI-1': 50, 'TI-2': 20, 'PI-1': 5 });
     await Promise.all([two.start('one'), two.start('two')]);
     await two.followed(await two.leader());
     const agentPort = await freePort();
     renderer = await two.renderer('r1', '--agent-port', String(agentPort), ...HOST);
-    proxy = await Haproxy.start([Object.assign(renderer, { agentPort })], two.cores.one, two.cores.two);
-    plain = await Haproxy.startCores([two.cores.one, two.cores.two]);
+    proxy = own(await Haproxy.start([Object.assign(renderer, { agentPort })], two.cores.one, two.cores.two));
+    plain = own(await Haproxy.startCores([two.cores.one, two.cores.two]));
     await until('the proxy and the renderer', async () => /^UP/.test((await proxy.servers().catch(() => null))?.r1.status));
-});
-after(async () => {
-    await proxy?.destroy();
-    await plain?.destroy();
-    await two?.destroy();
-    await server?.destroy();
 });
 
 const ask = (path, token = two.nodes.tokens.viewer) => get(proxy.port, path, 'GET', `Authorization: Bearer ${token}\r\n`);

@@ -2,9 +2,10 @@
 // The plant on a headset: an emulated Quest 3 (npm's iwer) in chromium.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { openPage, readPng, SHOOTS, SCREENSHOTS, waitForHealth, waitForPicture } from './support/browser.mjs';
 import { aimAt, enterVr, EYE, eyesPng, headsetScript, IPD_M, lookFrom, pull, SCREEN, seen } from './support/headset.mjs';
+import { setUp } from './support/set_up.mjs';
 import { notBuilt, TinyPlant } from './support/tiny_plant.mjs';
 import { until } from './support/until.mjs';
 
@@ -12,15 +13,12 @@ const options = { skip: notBuilt(), timeout: 200000 };
 const PX_PER_TAN = EYE.height / 2; // focal length of one eye in pixels: its field of view is 90 degrees
 let plant;
 
-before(async () => {
-    if (options.skip)
-        return;
-    plant = await TinyPlant.create();
+setUp(options.skip, async (own) => {
+    plant = own(await TinyPlant.create());
     plant.keepFresh();
     await plant.start();
     await plant.set({ 'TI-1': 94, 'TI-2': 94, 'PI-1': 5 }); // readings that give the field one colour everywhere
 });
-after(() => plant?.destroy());
 
 // expected: a script error that the emulator itself causes.
 async function withHeadset(f, at = plant, expected = null) {

@@ -6,11 +6,12 @@ import { spawn } from 'node:child_process';
 import { readdirSync, readlinkSync } from 'node:fs';
 import { connect } from 'node:net';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { after, test } from 'node:test';
 import { encodeFrame, get, PlainClient } from './support/plain_client.mjs';
 import { missing as missingDemo, startPlant } from './support/plant.mjs';
 import { cpuMs } from './support/processes.mjs';
 import { promise } from './support/promise.mjs';
+import { setUp } from './support/set_up.mjs';
 import { BIN, notBuilt, runProgram, sleep, TinyPlant } from './support/tiny_plant.mjs';
 import { until } from './support/until.mjs';
 
@@ -23,9 +24,7 @@ const LEAST_CPU_S = 0.4; // processor time of a viewer that gets all its frames,
 const MOST_TIMES = 5; // the bad clients together may make the daemon use this many times the processor time that one viewer costs
 let plant, quiet;
 
-before(async () => {
-    if (skip)
-        return;
+setUp(skip, async () => {
     plant = await TinyPlant.create();
     assert.equal(plant.prepare().code, 0);
     const tokens = join(plant.folder, 'tokens');

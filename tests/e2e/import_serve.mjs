@@ -9,11 +9,12 @@ import { copyFileSync, existsSync, mkdtempSync, readdirSync, readFileSync, renam
 import { connect } from 'node:net';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { after, test } from 'node:test';
 import { arrive, drawnAt, land, openPage, settle, shoot, TABLET, waitForPicture } from './support/browser.mjs';
 import { DATA } from './support/folders.mjs';
 import { ifcOf, KINDS } from './support/ifc_kinds.mjs';
 import { stl } from './support/mesh_samples.mjs';
+import { setUp } from './support/set_up.mjs';
 import { sweep } from './support/sweep.mjs';
 import { formats, makeTagList } from './support/tag_lists.mjs';
 import { freePort } from './support/ports.mjs';
@@ -342,9 +343,7 @@ test('the import reports duplicate rows and a tag name with control characters',
 // --- on the page
 
 let served, browser, page;
-before(async () => {
-    if (notBuilt)
-        return;
+setUp(notBuilt, async () => {
     served = await Served.start();
     browser = await openPage(`${served.url}?lang=en`, DESK);
     ({ page } = browser);

@@ -5,8 +5,9 @@ import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { cpSync, existsSync, mkdirSync, readdirSync, readFileSync, rmdirSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { basename, join, resolve } from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { folderOfTests } from './support/folders.mjs';
+import { setUp } from './support/set_up.mjs';
 import { BIN, missing, Program, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 import { freePort } from './support/ports.mjs';
 import { sweep } from './support/sweep.mjs';
@@ -19,11 +20,9 @@ const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : false;
 const root = folderOfTests();
 let plant;
 
-before(async () => {
-    if (!skip)
-        plant = await TinyPlant.create();
+setUp(skip, async (own) => {
+    plant = own(await TinyPlant.create());
 });
-after(() => plant?.destroy());
 const init = (...args) => runProgram('plantcast', ['init', ...args, '--root', root]);
 const etc = (...names) => join(root, 'etc/plantcast', ...names), mode = (path) => (statSync(path).mode & 0o777).toString(8);
 

@@ -5,8 +5,9 @@ import assert from 'node:assert/strict';
 import { existsSync, readFileSync } from 'node:fs';
 import { createServer } from 'node:http';
 import { extname, join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { openPage, shoot } from './support/browser.mjs';
+import { setUp } from './support/set_up.mjs';
 import { BIN } from './support/tiny_plant.mjs';
 
 const WEB = join(BIN, 'web'), VERSION = '/made/version.js';
@@ -22,12 +23,10 @@ function serve(request, response) {
     return response.end(path === VERSION ? `export const version = '${version}';\n` : readFileSync(file));
 }
 
-before(async () => {
-    if (options.skip)
-        return;
-    server = createServer(serve).listen(0, '127.0.0.1');
+setUp(options.skip, async (own) => {
+    server = own(createServer(serve).listen(0, '127.0.0.1'));
     await new Promise((done) => server.once('listening', done));
-    browser = await openPage(`http://127.0.0.1:${server.address().port}/?lang=en`);
+    browser = own(await openPage(`http://127.0.0.1:${server.address().port}/?lang=en`));
     page = browser.page;
     await page.waitForFunction(() => globalThis.plantcast);
     await page.evaluate(async () => { // registers the service worker, as a page loaded over https does
@@ -35,10 +34,6 @@ before(async () => {
         await navigator.serviceWorker.ready;
     });
     await page.waitForFunction(() => navigator.serviceWorker.controller);
-});
-after(async () => {
-    await browser?.close();
-    server?.close();
 });
 
 // Returns { version: [path, ...] }: the cached files of each version of the page. Caches that do not belong to the page appear

@@ -8,12 +8,13 @@ import { appendFileSync, chmodSync, cpSync, mkdirSync, mkdtempSync, readFileSync
     writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { after, test } from 'node:test';
 import { openPage, shoot, waitForPicture } from './support/browser.mjs';
 import { linesOf } from './support/lines.mjs';
 import { until } from './support/nodes.mjs';
 import { PlainClient } from './support/plain_client.mjs';
 import { freePort } from './support/ports.mjs';
+import { setUp } from './support/set_up.mjs';
 import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 
 const absent = missing();
@@ -28,9 +29,7 @@ let plant, port, engineer, mounted, shared = 0;
 
 const path = (name) => join(plant.folder, name);
 
-before(async () => {
-    if (skip)
-        return;
+setUp(skip, async () => {
     plant = await TinyPlant.create();
     plant.addAlarms();
     const tags = readFileSync(path('tags.csv'), 'utf8'); // changes the tag list so that PI-1's alarm stays until it is reset

@@ -8,10 +8,11 @@ import { createServer } from 'node:http';
 import { createServer as createSecureServer } from 'node:https';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { after, afterEach, before, test } from 'node:test';
+import { after, afterEach, test } from 'node:test';
 import { SCREENSHOTS } from './support/browser.mjs';
 import { freePort } from './support/ports.mjs';
 import { family } from './support/processes.mjs';
+import { setUp } from './support/set_up.mjs';
 import { notBuilt, sleep, startTiny } from './support/tiny_plant.mjs';
 import { missingDisplay, savePng, startDisplay } from './support/x_display.mjs';
 
@@ -61,9 +62,7 @@ function startKiosk(url, { before: starter = [], around = [], env = display.env 
     kiosk.ended = new Promise((done) => child.once('exit', (code) => { kiosk.code = code; done(code); }));
 }
 
-before(async () => {
-    if (why)
-        return;
+setUp(why, async () => {
     display = await startDisplay(WIDTH, HEIGHT);
     state = mkdtempSync(join(tmpdir(), 'plantcast-kiosk-'));
     port = await freePort();

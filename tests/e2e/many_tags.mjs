@@ -4,8 +4,9 @@
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { PlainClient } from './support/plain_client.mjs';
+import { setUp } from './support/set_up.mjs';
 import { notBuilt, sleep, TinyPlant } from './support/tiny_plant.mjs';
 import { until } from './support/until.mjs';
 
@@ -16,20 +17,17 @@ let plant;
 
 // Sets up 20,000 tags on one device, each with a high limit, in registers from 400101 on, which nearly fill the table of
 // 65,536. The registers below belong to the tiny plant's own tags.
-before(async () => {
-    if (options.skip)
-        return;
-    plant = await TinyPlant.create();
-    const file = join(plant.folder, 'tags.csv'), own = readFileSync(file, 'utf8').replace('Stale s', 'Stale s,H');
+setUp(options.skip, async (own) => {
+    plant = own(await TinyPlant.create());
+    const file = join(plant.folder, 'tags.csv'), tiny = readFileSync(file, 'utf8').replace('Stale s', 'Stale s,H');
     const lines = Array.from({ length: MANY }, (_, i) => `${name(i)},${400101 + i},Short,bar,spare,,,,,,3,30000`);
-    writeFileSync(file, `${own.replace(/,1$/gm, ',3,')}${lines.join('\n')}\n`);
+    writeFileSync(file, `${tiny.replace(/,1$/gm, ',3,')}${lines.join('\n')}\n`);
     writeFileSync(plant.file, readFileSync(plant.file, 'utf8').replace('poll_ms: 100', 'poll_ms: 1000'));
     const prepared = plant.prepare();
     assert.equal(prepared.code, 0, prepared.err);
     await plant.startSim();
     await plant.startDaemon();
 });
-after(() => plant?.destroy());
 
 const get = async (path) => {
     const response = await fetch(`http://127.0.0.1:${plant.port}${path}`);

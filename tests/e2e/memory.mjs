@@ -4,11 +4,12 @@
 // test-long`, an hour with USES=1440.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { setTimeout as sleep } from 'node:timers/promises';
 import { Curious, dice } from './support/curious.mjs';
 import { get } from './support/plain_client.mjs';
 import { missing, startPlant } from './support/plant.mjs';
+import { setUp } from './support/set_up.mjs';
 import { sweep } from './support/sweep.mjs';
 
 const USES = Number(process.env.USES ?? sweep(240, 24)), SEED = Number(process.env.PLANTCAST_SEED ?? 20), LEAVES = 0.02;
@@ -29,14 +30,11 @@ async function gauges() {
 }
 const told = (all) => Object.entries(all).map(([name, value]) => `${name} ${value.toFixed(0)}`).join(', ');
 
-before(async () => {
-    if (why)
-        return;
-    plant = await startPlant('', () => {}, ['--memory', String(BOUND_MB)]);
+setUp(why, async (own) => {
+    plant = own(await startPlant('', () => {}, ['--memory', String(BOUND_MB)]));
     port = Number(new URL(plant.url).port);
     start = megabytes('VmRSS');
 });
-after(() => plant?.stop());
 
 test('the daemon\'s memory stays under its limit, whatever a random user tries', options, async (t) => {
     const random = dice(SEED), began = performance.now(), done = {};

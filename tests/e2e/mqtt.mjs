@@ -4,10 +4,11 @@
 import assert from 'node:assert/strict';
 import { createServer } from 'node:net';
 import packets from 'mqtt-packet';
-import { after, afterEach, before, test } from 'node:test';
+import { afterEach, test } from 'node:test';
 import { Broker, missingBroker } from './support/broker.mjs';
 import { promise } from './support/promise.mjs';
 import { PublishedPlant } from './support/published_plant.mjs';
+import { setUp } from './support/set_up.mjs';
 import { notBuilt, runProgram, sleep } from './support/tiny_plant.mjs';
 
 const options = { skip: notBuilt() || (missingBroker() ?? false), timeout: 240000 };
@@ -20,21 +21,15 @@ const TAGS = {
 };
 let broker, plant, publisher;
 
-before(async () => {
-    if (options.skip)
-        return;
-    broker = await Broker.start();
-    plant = await PublishedPlant.create(broker);
+setUp(options.skip, async (own) => {
+    broker = own(await Broker.start());
+    plant = own(await PublishedPlant.create(broker));
 });
 afterEach(async () => {
     await plant?.daemon?.stop();
     publisher?.end(true);
     publisher = null;
     await broker?.restart();
-});
-after(async () => {
-    await plant?.destroy();
-    await broker?.destroy();
 });
 
 const good = { quality_name: 'Good' };

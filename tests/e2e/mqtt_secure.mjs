@@ -6,9 +6,10 @@ import { spawnSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { after, afterEach, before, test } from 'node:test';
+import { after, afterEach, test } from 'node:test';
 import { Broker, makeCertificates, missingBroker } from './support/broker.mjs';
 import { PublishedPlant } from './support/published_plant.mjs';
+import { setUp } from './support/set_up.mjs';
 import { notBuilt, runProgram } from './support/tiny_plant.mjs';
 
 const options = { skip: notBuilt() || (missingBroker() ?? false), timeout: 240000 };
@@ -17,9 +18,7 @@ const good = { quality_name: 'Good' };
 let folder, broker, plant, publisher;
 const path = (name) => join(folder, name), pem = (name) => readFileSync(path(name));
 
-before(async () => {
-    if (options.skip)
-        return;
+setUp(options.skip, async () => {
     folder = mkdtempSync(join(tmpdir(), 'plantcast-secrets-'));
     makeCertificates(folder);
     makeCertificates(folder, 'other');

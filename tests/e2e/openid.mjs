@@ -5,7 +5,7 @@ import assert from 'node:assert/strict';
 import { chmodSync, existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { createServer, request } from 'node:http';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { openPage, shoot, waitForPicture } from './support/browser.mjs';
 import { Glewlwyd, glewlwydIsThere } from './support/glewlwyd.mjs';
 import { IdentityProvider } from './support/identity_provider.mjs';
@@ -13,6 +13,7 @@ import { linesOf } from './support/lines.mjs';
 import { PlainClient } from './support/plain_client.mjs';
 import { freePort } from './support/ports.mjs';
 import { long, promise } from './support/promise.mjs';
+import { setUp } from './support/set_up.mjs';
 import { sweep } from './support/sweep.mjs';
 import { notBuilt, runProgram, sleep, TinyPlant } from './support/tiny_plant.mjs';
 import { until } from './support/until.mjs';
@@ -79,25 +80,19 @@ async function start(...more) {
     await until('the way to the provider', begins);
 }
 
-before(async () => {
-    if (skip)
-        return;
-    plant = await TinyPlant.create();
+setUp(skip, async (own) => {
+    plant = own(await TinyPlant.create());
     plant.addAlarms();
     assert.equal(plant.prepare().code, 0);
     writeFileSync(path('secret'), 'geheim +\n');
     chmodSync(path('secret'), 0o600);
     token = runProgram('plantcast', ['token', 'add', path('tokens'), '--role', 'engineer', '--name', 'break-glass']).out.trim();
-    provider = new IdentityProvider();
+    provider = own(new IdentityProvider());
     // the provider listens on a reserved port, so that no other program takes it while tests stop the provider
     await provider.listen(await freePort());
     port = await freePort();
     writeConfig();
     await start();
-});
-after(async () => {
-    await provider?.close();
-    await plant?.destroy();
 });
 
 test('a user signs in, acts under the own name, and signs out', { skip }, async () => {

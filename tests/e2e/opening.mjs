@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Measures how soon the page shows the plant: from the request to the first picture on the screen.
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { browserWith, DESKTOP } from './support/browser.mjs';
 import { median } from './support/crowd.mjs';
 import { missing, startPlant } from './support/plant.mjs';
+import { setUp } from './support/set_up.mjs';
 
 const why = missing();
 const options = { skip: why ?? false, timeout: 400000 };
@@ -12,15 +13,9 @@ const MOST_MS = 1000, LOADS = 5, PATIENCE_MS = 120000;
 const LAN = { offline: false, latency: 1, downloadThroughput: 12.5e6, uploadThroughput: 12.5e6 }; // latency 1 ms, 100 Mbit/s
 let plant, browser;
 
-before(async () => {
-    if (why)
-        return;
-    plant = await startPlant();
-    browser = await browserWith([]);
-});
-after(async () => {
-    await browser?.close();
-    await plant?.stop();
+setUp(why, async (own) => {
+    plant = own(await startPlant());
+    browser = own(await browserWith([]));
 });
 
 // Opens the page in a new browser profile. Returns the milliseconds until the first picture is on the screen.

@@ -4,8 +4,9 @@
 import assert from 'node:assert/strict';
 import { appendFileSync, existsSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { FLAG, PlainClient } from './support/plain_client.mjs';
+import { setUp } from './support/set_up.mjs';
 import { notBuilt, runProgram, sleep, TinyPlant } from './support/tiny_plant.mjs';
 
 const skip = notBuilt();
@@ -25,10 +26,8 @@ function series() {
     return `${lines.join('\n')}\n`;
 }
 
-before(async () => {
-    if (skip)
-        return;
-    plant = await TinyPlant.create();
+setUp(skip, async (own) => {
+    plant = own(await TinyPlant.create());
     appendFileSync(plant.file, 'views:\n- { id: near, view: "camera=3,-2,3,0,0,0,0,0,1,45&at=1" }\n- { id: all, view: "look=default" }\n'
         + 'tours:\n- id: round\n  stops: [{ view: near, dwell_s: 2, text: The first of two \uccab \ubc88\uc9f8 }, '
         + '{ view: all, dwell_s: 3 }]\n');
@@ -39,7 +38,6 @@ before(async () => {
     await plant.startSim();
     await plant.startDaemon();
 });
-after(() => plant?.destroy());
 
 async function open(fields) {
     const client = await PlainClient.open(plant.port);

@@ -6,9 +6,10 @@ import { spawn } from 'node:child_process';
 import { once } from 'node:events';
 import { appendFileSync, existsSync, readdirSync, readFileSync, renameSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { PlainClient } from './support/plain_client.mjs';
 import { promise } from './support/promise.mjs';
+import { setUp } from './support/set_up.mjs';
 import { notBuilt, TinyPlant } from './support/tiny_plant.mjs';
 import { until } from './support/until.mjs';
 
@@ -16,10 +17,8 @@ const skip = notBuilt();
 const options = { skip, timeout: 240000 };
 let plant, tagsFile, seq = 0;
 
-before(async () => {
-    if (skip)
-        return;
-    plant = await TinyPlant.create();
+setUp(skip, async (own) => {
+    plant = own(await TinyPlant.create());
     tagsFile = join(plant.folder, 'tags.csv');
     plant.keepFresh();
     // Gives the tag list what saving must keep or fill in: a tag without a position, an unknown column with a comment, and
@@ -33,7 +32,6 @@ before(async () => {
     await plant.startDaemon();
     await until('readings', async () => (await readings()).every(({ quality }) => quality === 'good'));
 });
-after(() => plant?.destroy());
 
 const readings = async () => (await (await fetch(`http://127.0.0.1:${plant.port}/api/v1/tags`)).json()).tags;
 

@@ -4,10 +4,11 @@
 import assert from 'node:assert/strict';
 import { chmodSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, afterEach, before, test } from 'node:test';
+import { afterEach, test } from 'node:test';
 import { median } from './support/crowd.mjs';
 import { CuttableLink, missingPostgres, PostgresServer } from './support/postgres_server.mjs';
 import { promise } from './support/promise.mjs';
+import { setUp } from './support/set_up.mjs';
 import { sweep } from './support/sweep.mjs';
 import { notBuilt, runProgram, sleep, TinyPlant } from './support/tiny_plant.mjs';
 import { until as waitFor } from './support/until.mjs';
@@ -18,11 +19,9 @@ const options = { skip, timeout: 240000 + AWAY_MS };
 const TAGS = ['TI-1', 'TI-2', 'PI-1'];
 let server, plant, link, feeding, plain, databases = 0;
 
-before(async () => {
-    if (skip)
-        return;
-    server = await PostgresServer.start();
-    plant = await TinyPlant.create();
+setUp(skip, async (own) => {
+    server = own(await PostgresServer.start());
+    plant = own(await TinyPlant.create());
     plain = readFileSync(plant.file, 'utf8');
     assert.equal(plant.prepare().code, 0);
     await plant.startSim();
@@ -32,10 +31,6 @@ afterEach(async () => {
     await plant?.daemon?.stop();
     link?.close();
     link = null;
-});
-after(async () => {
-    await plant?.destroy();
-    await server?.destroy();
 });
 
 // Changes all readings every 50 ms, so that the history must record each sample. Runs until stopFeeding().

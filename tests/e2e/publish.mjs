@@ -3,9 +3,10 @@
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { after, test } from 'node:test';
 import { Broker, missingBroker } from './support/broker.mjs';
 import { PublishedPlant } from './support/published_plant.mjs';
+import { setUp } from './support/set_up.mjs';
 import { notBuilt, runProgram, sleep, TinyPlant } from './support/tiny_plant.mjs';
 import { until as waitFor } from './support/until.mjs';
 
@@ -13,9 +14,7 @@ const options = { skip: notBuilt() || (missingBroker() ?? false), timeout: 24000
 const PREFIX = 'plantcast/two boxes';
 let broker, plant, other, client, heard, publications, started;
 
-before(async () => {
-    if (options.skip)
-        return;
+setUp(options.skip, async () => {
     broker = await Broker.start();
     plant = await TinyPlant.create();
     plant.giveDeviceTime();

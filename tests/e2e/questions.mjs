@@ -5,9 +5,10 @@ import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { connect } from 'node:net';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { get } from './support/plain_client.mjs';
 import { promise } from './support/promise.mjs';
+import { setUp } from './support/set_up.mjs';
 import { notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 
 const options = { skip: notBuilt(), timeout: 240000 };
@@ -20,10 +21,8 @@ const query = (tags, points) => `/api/v1/history?tags=${tags}&from=${BEGIN_S}&to
 const all = query(names.join(','), 20000);
 let plant;
 
-before(async () => {
-    if (options.skip)
-        return;
-    plant = await TinyPlant.create();
+setUp(options.skip, async (own) => {
+    plant = own(await TinyPlant.create());
     const rows = names.map((name, i) => `${name},${400001 + 2 * i},Float,bar,,pressure,P-101A,3,0,0.5,1`);
     writeFileSync(join(plant.folder, 'tags.csv'),
         ['Tag Name,Address,Data Type,Eng Units,Description,Group,Asset,X,Y,Z,Stale s', ...rows, ''].join('\n'));
@@ -36,7 +35,6 @@ before(async () => {
     assert.equal(code, 0, err);
     await plant.startDaemon('--limit', `address-questions=${READERS}`);
 });
-after(() => plant?.destroy());
 
 const residentMB = () => Number(readFileSync(`/proc/${plant.daemon.child.pid}/status`, 'utf8').match(/VmRSS:\s+(\d+)/)[1]) / 1024;
 const head = (path) => `GET ${path} HTTP/1.1\r\nHost: 127.0.0.1:${plant.port}\r\n\r\n`;

@@ -4,8 +4,9 @@
 import assert from 'node:assert/strict';
 import { chmodSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { PlainClient } from './support/plain_client.mjs';
+import { setUp } from './support/set_up.mjs';
 import { notBuilt, Program, runProgram, sleep, TinyPlant } from './support/tiny_plant.mjs';
 
 const options = { skip: notBuilt(), timeout: 280000 };
@@ -13,10 +14,8 @@ const DAY_BYTES = 10e6, DAY_S = 24 * 3600;
 let plant, token;
 const costs = {}; // bytes and lines of the log for each kind of event
 
-before(async () => {
-    if (options.skip)
-        return;
-    plant = await TinyPlant.create();
+setUp(options.skip, async (own) => {
+    plant = own(await TinyPlant.create());
     plant.addAlarms();
     const file = join(plant.folder, 'tokens');
     token = runProgram('plantcast', ['token', 'add', file, '--role', 'operator', '--name', 'desk-of-shift-3']).out.trim();
@@ -29,7 +28,6 @@ before(async () => {
     await plant.set({ 'TI-1': 80, 'TI-2': 20, 'PI-1': 5 });
     await sleep(3000);
 });
-after(() => plant?.destroy());
 
 const said = () => plant.daemon.said;
 // Causes an event `times` times, waits, and records in costs[what] how many bytes and lines the log grew per event. Returns the

@@ -3,8 +3,9 @@
 // if no device writes anything.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { PlainClient, get } from './support/plain_client.mjs';
+import { setUp } from './support/set_up.mjs';
 import { notBuilt, TinyPlant } from './support/tiny_plant.mjs';
 import { median, sleep } from './support/crowd.mjs';
 import { promise } from './support/promise.mjs';
@@ -13,17 +14,11 @@ const FLAG_STILL = 2, FLAG_MORE = 8, FLAG_DATA = 16, CHANGES = 7;
 const options = { skip: notBuilt(), timeout: 240000 };
 let plant, client;
 
-before(async () => {
-    if (options.skip)
-        return;
-    plant = await TinyPlant.running();
-    client = await PlainClient.open(plant.port);
+setUp(options.skip, async (own) => {
+    plant = own(await TinyPlant.running());
+    client = own(await PlainClient.open(plant.port));
     await client.hello({ width: 320, height: 240 });
     await client.frameWhere('a refined frame', (f) => (f.flags & FLAG_STILL) !== 0);
-});
-after(async () => {
-    client?.close();
-    await plant?.destroy();
 });
 
 // Returns how often per second the daemon's main thread (event loop) went to sleep, measured for this many seconds.

@@ -5,9 +5,10 @@ import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { closeSync, constants, openSync, readFileSync, renameSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { PlainClient } from './support/plain_client.mjs';
 import { promise } from './support/promise.mjs';
+import { setUp } from './support/set_up.mjs';
 import { notBuilt, sleep, TinyPlant } from './support/tiny_plant.mjs';
 import { until } from './support/until.mjs';
 
@@ -16,10 +17,8 @@ const options = { skip, timeout: 300000 };
 const patienceMs = 100000; // timeout of a reload in ms: it takes a second, but longer on a busy machine
 let plant, tagsFile, firstTags;
 
-before(async () => {
-    if (skip)
-        return;
-    plant = await TinyPlant.create();
+setUp(skip, async (own) => {
+    plant = own(await TinyPlant.create());
     tagsFile = join(plant.folder, 'tags.csv');
     // A late reading or poll on a busy machine must not look like a gap caused by the reload.
     firstTags = readFileSync(tagsFile, 'utf8').replace('Stale s', 'Stale s,H').replace(/,1$/gm, ',60,');
@@ -28,7 +27,6 @@ before(async () => {
     writeFileSync(plant.file, `${readFileSync(plant.file, 'utf8').replace('timeout_ms: 300', 'timeout_ms: 10000')}alarms: local\n`);
     await plant.start();
 });
-after(() => plant?.destroy());
 
 const url = (path) => `http://127.0.0.1:${plant.port}${path}`;
 const reload = async () => {

@@ -7,10 +7,11 @@ import { existsSync, mkdtempSync, readFileSync, rmSync, statSync, writeFileSync 
 import { createServer } from 'node:net';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { after, test } from 'node:test';
 import { PlainClient, get } from './support/plain_client.mjs';
 import { freePort } from './support/ports.mjs';
 import { promise } from './support/promise.mjs';
+import { setUp } from './support/set_up.mjs';
 import { BIN, notBuilt, runProgram, sleep, TinyPlant } from './support/tiny_plant.mjs';
 import { until } from './support/until.mjs';
 
@@ -57,9 +58,7 @@ function serve(args, managed = []) {
     return service;
 }
 
-before(async () => {
-    if (skip)
-        return;
+setUp(skip, async () => {
     plant = await TinyPlant.create();
     runtime = mkdtempSync(join(tmpdir(), 'plantcast-runtime-'));
     assert.equal(plant.prepare().code, 0);

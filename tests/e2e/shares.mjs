@@ -3,10 +3,11 @@
 // another one.
 import assert from 'node:assert/strict';
 import { connect } from 'node:net';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { get, PlainClient } from './support/plain_client.mjs';
 import { promise } from './support/promise.mjs';
 import { long } from './support/promise.mjs';
+import { setUp } from './support/set_up.mjs';
 import { notBuilt, sleep, TinyPlant } from './support/tiny_plant.mjs';
 
 const options = { skip: notBuilt(), timeout: 240000 };
@@ -17,14 +18,11 @@ const LARGE = { width: 4096, height: 4096 }, BIG_PICTURE = '/snapshot.png?width=
 const LIMITS = ['address-sessions=32', 'address-pixels=134217728', 'address-snapshots=4'].flatMap((one) => ['--limit', one]);
 let plant;
 
-before(async () => {
-    if (options.skip)
-        return;
-    plant = await TinyPlant.create();
+setUp(options.skip, async (own) => {
+    plant = own(await TinyPlant.create());
     assert.equal(plant.prepare().code, 0);
     await plant.startDaemon(...LIMITS);
 });
-after(() => plant?.destroy());
 
 const settled = (client) => client.until('an answer', (c) => c.closed || c.texts.some((m) => m.type === 'welcome'), 30000);
 

@@ -7,12 +7,13 @@ import { createPrivateKey, sign } from 'node:crypto';
 import { appendFileSync, chmodSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { get } from 'node:http';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { isDeepStrictEqual } from 'node:util';
 import { openPage, shoot, waitForHealth, waitForPicture } from './support/browser.mjs';
 import { alteredFilms } from './support/mp4_boxes.mjs';
 import { chunksOf, pngOf, textOf, withRows, withText } from './support/png_chunks.mjs';
 import { PlainClient } from './support/plain_client.mjs';
+import { setUp } from './support/set_up.mjs';
 import { notBuilt, runProgram, sleep, TinyPlant } from './support/tiny_plant.mjs';
 import { until } from './support/until.mjs';
 
@@ -49,10 +50,8 @@ function refused(png, why) {
     assert.match(err, why);
 }
 
-before(async () => {
-    if (skip)
-        return;
-    plant = await TinyPlant.create();
+setUp(skip, async (own) => {
+    plant = own(await TinyPlant.create());
     plant.keepFresh();
     appendFileSync(plant.file, `views:
 - { id: warm, title: Warm, view: "camera=2,-4,3,0,0,0,0,0,1,45" }
@@ -70,7 +69,6 @@ walls: [{ id: tiled, tile: { columns: 2, rows: 1, views: warm } }]
         .every(({ name, value }) => value === values[name]));
     picture = await fetchPicture('width=640&height=400');
 });
-after(() => plant?.destroy());
 
 test('a signed picture is verified, and every pixel is drawn again', { skip }, async () => {
     const { code, out, err } = redraw(picture);

@@ -2,12 +2,13 @@
 // Sparkplug B with Debian's mosquitto and the Eclipse project's client: births, deaths, aliases, types, gaps and rebirths; and
 // a node and a broker that are killed.
 import assert from 'node:assert/strict';
-import { after, afterEach, before, test } from 'node:test';
+import { afterEach, test } from 'node:test';
 import sparkplug from 'sparkplug-client';
 import payloads from 'sparkplug-payload';
 import { Broker, missingBroker } from './support/broker.mjs';
 import { promise } from './support/promise.mjs';
 import { PublishedPlant } from './support/published_plant.mjs';
+import { setUp } from './support/set_up.mjs';
 import { notBuilt, sleep } from './support/tiny_plant.mjs';
 import { until as waitFor } from './support/until.mjs';
 
@@ -55,21 +56,15 @@ async function allDead(...names) {
 // Closes the node's connection without a DISCONNECT message, so that the broker publishes the node's death certificate.
 const kill = (node) => node.client.stream.destroy();
 
-before(async () => {
-    if (options.skip)
-        return;
-    broker = await Broker.start();
-    plant = await PublishedPlant.create(broker);
+setUp(options.skip, async (own) => {
+    broker = own(await Broker.start());
+    plant = own(await PublishedPlant.create(broker));
 });
 afterEach(async () => {
     await plant?.daemon?.stop();
     nodes.forEach((node) => node.client.end(true));
     nodes = [];
     await broker?.restart();
-});
-after(async () => {
-    await plant?.destroy();
-    await broker?.destroy();
 });
 
 test('births and data of every number type are read, by name and by alias', options, async () => {

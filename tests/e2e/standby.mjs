@@ -6,21 +6,20 @@ import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { linkSync, readdirSync, renameSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { after, test } from 'node:test';
 import { PlainClient } from './support/plain_client.mjs';
 import { PostgresServer } from './support/postgres_server.mjs';
 import { promise } from './support/promise.mjs';
 import { long } from './support/promise.mjs';
 import { HookServer } from './support/receivers.mjs';
+import { setUp } from './support/set_up.mjs';
 import { runProgram } from './support/tiny_plant.mjs';
 import { kill, missingTwoCores, sleep, TAKE_OVER_MS, terms, TwoCores, until } from './support/two_cores.mjs';
 
 const skip = missingTwoCores(), options = { skip, timeout: 240000 };
 let server, hook, two, renderer, feeding, from, cutAt, killedAt, pausedMs;
 
-before(async () => {
-    if (skip)
-        return;
+setUp(skip, async () => {
     server = await PostgresServer.start();
     server.makeDatabase('plants');
     hook = new HookServer();

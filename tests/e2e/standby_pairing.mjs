@@ -2,7 +2,8 @@
 // A display that was paired at the leading core is still paired at the core that takes over. A display whose pairing is revoked
 // there stays revoked when the first core leads again.
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
+import { setUp } from './support/set_up.mjs';
 import { runProgram } from './support/tiny_plant.mjs';
 import { kill, missingTwoCores, TwoCores, until } from './support/two_cores.mjs';
 
@@ -14,17 +15,14 @@ walls: [{ id: room, displays: [{ grid: [main], panes: [{ area: main, views: [who
 const SECRET = `pc_${'7'.repeat(64)}`;
 let two, renderer, engineer;
 
-before(async () => {
-    if (skip)
-        return;
-    two = await TwoCores.running(async (cores) => {
+setUp(skip, async (own) => {
+    two = own(await TwoCores.running(async (cores) => {
         cores.nodes.trustsLocal = false;
         engineer = runProgram('plantcast', ['token', 'add', cores.nodes.tokenFile, '--role', 'engineer', '--name', 'eve']).out.trim();
         await cores.plant.tell('set TI-1 50');
-    }, WALLS, []);
+    }, WALLS, []));
     renderer = await two.renderer('r');
 });
-after(() => two?.destroy());
 
 const ask = async ({ port }) => {
     const headers = { Authorization: `Pairing ${SECRET}` };

@@ -9,8 +9,9 @@ import https from 'node:https';
 import { connect } from 'node:net';
 import { connect as connectTls } from 'node:tls';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { encodeFrame, PlainClient } from './support/plain_client.mjs';
+import { setUp } from './support/set_up.mjs';
 import { notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 import { until } from './support/until.mjs';
 
@@ -25,10 +26,8 @@ const UPGRADE = {
 };
 let plant, tokensFile, tokens, tls;
 
-before(async () => {
-    if (skip)
-        return;
-    plant = await TinyPlant.create();
+setUp(skip, async (own) => {
+    plant = own(await TinyPlant.create());
     appendFileSync(plant.file, 'alarms: local\n');
     const list = join(plant.folder, 'tags.csv'), lines = readFileSync(list, 'utf8').split('\n');
     writeFileSync(list, lines.map((line, i) => line && line + (i === 0 ? ',H' : ',60')).join('\n'));
@@ -45,7 +44,6 @@ before(async () => {
         '-addext', 'subjectAltName=DNS:plant.example']).status, 0);
     tls = ['--tls-cert', cert, '--tls-key', key];
 });
-after(() => plant?.destroy());
 
 async function serve(...args) {
     await plant.daemon?.stop();

@@ -6,7 +6,8 @@ import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { existsSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
+import { setUp } from './support/set_up.mjs';
 import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 
 const absent = missing();
@@ -41,10 +42,8 @@ function judge(name, move = ([x, y]) => [x, y]) {
     return result;
 }
 
-before(async () => {
-    if (skip)
-        return;
-    plant = await TinyPlant.create();
+setUp(skip, async (own) => {
+    plant = own(await TinyPlant.create());
     writeFileSync(file('values.csv'), 'TI-1,82\nTI-2,17\nPI-1,5\n');
     assert.equal(plant.prepare().code, 0);
     const { code, err } = snapshot('whole.png', '--strip', 'legend');
@@ -61,7 +60,6 @@ before(async () => {
                 spots.push({ at: [x, y], value: pick.value });
         }
 });
-after(() => plant?.destroy());
 
 test('values are read from a snapshot with a legend strip', { skip }, () => {
     assert.ok(spots.length > 20, `only ${spots.length} places with a value`);

@@ -7,12 +7,13 @@ import { existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { request } from 'node:https';
 import { networkInterfaces } from 'node:os';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { Haproxy, missingHaproxy } from './support/haproxy.mjs';
 import { linesOf } from './support/lines.mjs';
 import { Nodes, until } from './support/nodes.mjs';
 import { get, PlainClient } from './support/plain_client.mjs';
 import { freePort } from './support/ports.mjs';
+import { setUp } from './support/set_up.mjs';
 import { notBuilt } from './support/tiny_plant.mjs';
 
 // The daemons treat connections from this address as coming from another machine, because it is not a loopback address.
@@ -50,10 +51,8 @@ async function start(name) {
     return Object.assign(node, { agentPort });
 }
 
-before(async () => {
-    if (options.skip)
-        return;
-    nodes = await Nodes.create();
+setUp(options.skip, async (own) => {
+    nodes = own(await Nodes.create());
     nodes.trustsLocal = false;
     const made = spawnSync('openssl', ['req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:prime256v1', '-nodes', '-days', '2',
         '-keyout', path('key.pem'), '-out', path('cert.pem'), '-subj', '/CN=plant.example',
@@ -62,13 +61,9 @@ before(async () => {
     core = await nodes.core(0, '--trusted-proxy', HOST, ...served('core'));
     Object.defineProperty(core, 'url', { value: `wss://127.0.0.1:${core.port}` });
     renderers = [await start('r1'), await start('r2')];
-    proxy = await Haproxy.start(renderers, core, null, { host: HOST, ca: path('cert.pem') });
+    proxy = own(await Haproxy.start(renderers, core, null, { host: HOST, ca: path('cert.pem') }));
     await until('both nodes and the core up', async () => [...Object.values(await proxy.servers().catch(() => ({ none: {} }))),
         ...Object.values(await proxy.servers('core').catch(() => ({ none: {} })))].every(({ status }) => /^UP/.test(status)));
-});
-after(async () => {
-    await proxy?.destroy();
-    await nodes?.destroy();
 });
 
 test('eighty sessions of twenty clients on two nodes are all admitted, with the default limits', options, async (t) => {

@@ -7,11 +7,12 @@ import { appendFileSync, existsSync, readFileSync, writeFileSync } from 'node:fs
 import { connect, createServer } from 'node:net';
 import { networkInterfaces } from 'node:os';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { after, test } from 'node:test';
 import { SCREENSHOTS } from './support/browser.mjs';
 import { folderOfTests } from './support/folders.mjs';
 import { freePort } from './support/ports.mjs';
 import { promise } from './support/promise.mjs';
+import { setUp } from './support/set_up.mjs';
 import { sweep } from './support/sweep.mjs';
 import { BIN, missing, Program, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 
@@ -84,9 +85,7 @@ async function metric(name) {
     return Number(text.match(new RegExp(`^${name.replace(/[{}]/g, '\\$&')} (\\S+)$`, 'm'))[1]);
 }
 
-before(async () => {
-    if (options.skip)
-        return;
+setUp(options.skip, async () => {
     plant = await TinyPlant.running();
     writeFileSync(join(folder, 'readers'), `${READER}\n`);
     ports = { rtsp: await freePort(), srt: await freePort(), http: await freePort() };

@@ -4,9 +4,10 @@
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { openPage, shoot } from './support/browser.mjs';
 import { BIN } from './support/plant.mjs';
+import { setUp } from './support/set_up.mjs';
 import { notBuilt, startTiny } from './support/tiny_plant.mjs';
 
 const why = notBuilt();
@@ -47,16 +48,10 @@ walls:
 `;
 let plant, browser, page;
 
-before(async () => {
-    if (why)
-        return;
-    plant = await startTiny(WALLS);
-    browser = await openPage(`${plant.url}?wall=room`, { viewport: { width: 960, height: 540 } });
+setUp(why, async (own) => {
+    plant = own(await startTiny(WALLS));
+    browser = own(await openPage(`${plant.url}?wall=room`, { viewport: { width: 960, height: 540 } }));
     page = browser.page;
-});
-after(async () => {
-    await browser?.close();
-    await plant?.stop();
 });
 
 const paneTitle = (area) => page.locator(`.pane.${area} h2`);

@@ -3,10 +3,11 @@
 // that the server sets for all tiles.
 import assert from 'node:assert/strict';
 import { appendFileSync } from 'node:fs';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { openPage } from './support/browser.mjs';
 import { PlainClient } from './support/plain_client.mjs';
 import { promise } from './support/promise.mjs';
+import { setUp } from './support/set_up.mjs';
 import { notBuilt, sleep, TinyPlant } from './support/tiny_plant.mjs';
 
 const options = { skip: notBuilt(), timeout: 240000 };
@@ -18,15 +19,12 @@ walls:
 `;
 let plant;
 
-before(async () => {
-    if (options.skip)
-        return;
-    plant = await TinyPlant.create();
+setUp(options.skip, async (own) => {
+    plant = own(await TinyPlant.create());
     plant.keepFresh();
     appendFileSync(plant.file, WALLS);
     await plant.start();
 });
-after(() => plant?.destroy());
 
 const url = () => `http://127.0.0.1:${plant.port}/`;
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A wall display whose server is killed repeatedly: it reports that, never shows an old picture as new, and recovers each time.
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { openPage, shoot } from './support/browser.mjs';
 import { promise } from './support/promise.mjs';
+import { setUp } from './support/set_up.mjs';
 import { sweep } from './support/sweep.mjs';
 import { missing, startTiny } from './support/tiny_plant.mjs';
 
@@ -23,15 +24,9 @@ walls:
 `;
 let plant, wall;
 
-before(async () => {
-    if (why)
-        return;
-    plant = await startTiny(WALLS);
-    wall = await openPage(`${plant.url}?wall=room`, { viewport: { width: 640, height: 360 } });
-});
-after(async () => {
-    await wall?.close();
-    await plant?.stop();
+setUp(why, async (own) => {
+    plant = own(await startTiny(WALLS));
+    wall = own(await openPage(`${plant.url}?wall=room`, { viewport: { width: 640, height: 360 } }));
 });
 
 // Returns the times of the readings in the pane's picture and in the texts next to it; 0: not received on the current

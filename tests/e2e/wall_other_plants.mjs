@@ -7,11 +7,12 @@ import { once } from 'node:events';
 import { createServer } from 'node:http';
 import { request } from 'node:https';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { after, test } from 'node:test';
 import { openPage, shoot } from './support/browser.mjs';
 import { freePort } from './support/ports.mjs';
 import { promise } from './support/promise.mjs';
 import { makeCertificate } from './support/receivers.mjs';
+import { setUp } from './support/set_up.mjs';
 import { missing, runProgram, sleep, TinyPlant } from './support/tiny_plant.mjs';
 import { becomes } from './support/until.mjs';
 
@@ -116,9 +117,7 @@ async function startPlant() {
     await plant.start('--tokens', file);
 }
 
-before(async () => {
-    if (options.skip)
-        return;
+setUp(options.skip, async () => {
     await startOther();
     picture = await until(async () => {
         const png = await ask(`/snapshot.png?width=${SIZE[0]}&height=${SIZE[1]}`);

@@ -4,11 +4,12 @@
 import assert from 'node:assert/strict';
 import { chmodSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { openPage, shoot, waitForPicture } from './support/browser.mjs';
 import { folderOfTests } from './support/folders.mjs';
 import { PlainClient } from './support/plain_client.mjs';
 import { promise } from './support/promise.mjs';
+import { setUp } from './support/set_up.mjs';
 import { notBuilt, runProgram, startTiny } from './support/tiny_plant.mjs';
 import { until } from './support/until.mjs';
 
@@ -50,9 +51,7 @@ const connected = (page, name) => page.waitForFunction((of) => {
     return welcomed && connection.state === 'open';
 }, name);
 
-before(async () => {
-    if (why)
-        return;
+setUp(why, async (own) => {
     const file = join(folder, 'tokens');
     for (const role of ['operator', 'engineer'])
         tokens[role] = runProgram('plantcast', ['token', 'add', file, '--role', role, '--name', `${role}-1`]).out.trim();
@@ -60,17 +59,12 @@ before(async () => {
     tokens.tile = runProgram('plantcast',
         ['token', 'add', file, '--role', 'viewer', '--name', 'tile-2', '--display', 'tiled:2']).out.trim();
     chmodSync(file, 0o600);
-    plant = await startTiny(WALLS, ['--tokens', file, '--audit', join(folder, 'audit')]);
-    wall = await openPage(`${plant.url}?wall=room`, { viewport: { width: 960, height: 540 } });
-    desk = await openPage(plant.url, { viewport: { width: 1280, height: 720 } });
+    plant = own(await startTiny(WALLS, ['--tokens', file, '--audit', join(folder, 'audit')]));
+    wall = own(await openPage(`${plant.url}?wall=room`, { viewport: { width: 960, height: 540 } }));
+    desk = own(await openPage(plant.url, { viewport: { width: 1280, height: 720 } }));
     await letIn(desk.page, tokens.engineer);
     await desk.page.click('#views-toggle');
     await desk.page.locator('#devices').waitFor();
-});
-after(async () => {
-    await wall?.close();
-    await desk?.close();
-    await plant?.stop();
 });
 
 test('a wall tile takes its display\'s token: a viewer\'s token can neither lead nor delay a wall', options, async () => {

@@ -4,9 +4,10 @@
 import assert from 'node:assert/strict';
 import { mkdirSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { openPage, SCREENSHOTS } from './support/browser.mjs';
 import { missing, startPlant } from './support/plant.mjs';
+import { setUp } from './support/set_up.mjs';
 import { sweep } from './support/sweep.mjs';
 
 const taken = sweep(true, process.env.PLANTCAST_SHOTS === '1'), why = missing();
@@ -47,13 +48,10 @@ walls:
 `;
 let plant;
 
-before(async () => {
-    if (why)
-        return;
-    plant = await startPlant(`alarms: local\n${WALLS}`);
+setUp(why, async (own) => {
+    plant = own(await startPlant(`alarms: local\n${WALLS}`));
     await plant.ask('set TE-101 171.5');
 });
-after(() => plant?.stop());
 
 const open = (wall, display, [width, height]) =>
     openPage(`${plant.url}wall.html?wall=${wall}&display=${display}`, { viewport: { width, height } });

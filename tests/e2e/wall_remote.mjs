@@ -2,8 +2,9 @@
 // Notes of a shift, and a wall controlled from a desk: a view is sent to a pane, held, pointed at and released, with the user's
 // name; also after reloads.
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { openPage, settle, shoot, waitForPicture } from './support/browser.mjs';
+import { setUp } from './support/set_up.mjs';
 import { notBuilt, startTiny } from './support/tiny_plant.mjs';
 import { becomes, until } from './support/until.mjs';
 
@@ -24,20 +25,13 @@ walls:
 `;
 let plant, wall, desk;
 
-before(async () => {
-    if (why)
-        return;
-    plant = await startTiny(WALLS);
-    wall = await openPage(`${plant.url}?wall=room`, { viewport: { width: 960, height: 540 } });
-    desk = await openPage(plant.url, { viewport: { width: 1280, height: 720 } });
+setUp(why, async (own) => {
+    plant = own(await startTiny(WALLS));
+    wall = own(await openPage(`${plant.url}?wall=room`, { viewport: { width: 960, height: 540 } }));
+    desk = own(await openPage(plant.url, { viewport: { width: 1280, height: 720 } }));
     await waitForPicture(desk.page);
     await desk.page.click('#views-toggle');
     await desk.page.locator('#remote-pane option').first().waitFor({ state: 'attached' });
-});
-after(async () => {
-    await wall?.close();
-    await desk?.close();
-    await plant?.stop();
 });
 
 const title = () => wall.page.locator('.pane.views h2');

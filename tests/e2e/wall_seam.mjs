@@ -4,12 +4,13 @@
 import assert from 'node:assert/strict';
 import { appendFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { setTimeout as sleep } from 'node:timers/promises';
 import { burnShift } from '../../clients/web/core/wall.js';
 import { openPage, SCREENSHOTS, shoot } from './support/browser.mjs';
 import { PlainClient } from './support/plain_client.mjs';
 import { pixelsOf } from './support/png_pixels.mjs';
+import { setUp } from './support/set_up.mjs';
 import { notBuilt, TinyPlant } from './support/tiny_plant.mjs';
 import { savePng } from './support/x_display.mjs';
 
@@ -25,16 +26,13 @@ const CAMERA = { type: 'camera', seq: 1, eye: [3.5, -7, 1], target: [1.5, 0, 0],
 const shiftNow = () => burnShift(Date.now() * 1000);
 let plant;
 
-before(async () => {
-    if (options.skip)
-        return;
-    plant = await TinyPlant.create();
+setUp(options.skip, async (own) => {
+    plant = own(await TinyPlant.create());
     plant.keepFresh();
     appendFileSync(plant.file, WALLS);
     await plant.start();
     await plant.set({ 'TI-1': 80, 'TI-2': 20, 'PI-1': 5 });
 });
-after(() => plant?.destroy());
 
 // Returns the picture of both displays and the margin around them, drawn for a single client of that size: { width, at(x, y) }.
 async function wholePicture() {

@@ -4,9 +4,10 @@
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, afterEach, before, beforeEach, test } from 'node:test';
+import { afterEach, beforeEach, test } from 'node:test';
 import { openPage, shoot } from './support/browser.mjs';
 import { PlainClient } from './support/plain_client.mjs';
+import { setUp } from './support/set_up.mjs';
 import { notBuilt, sleep, TinyPlant } from './support/tiny_plant.mjs';
 
 const options = { skip: notBuilt(), timeout: 240000 };
@@ -21,10 +22,8 @@ walls:
 `;
 let plant, pages, crew, seq = 0;
 
-before(async () => {
-    if (options.skip)
-        return;
-    plant = await TinyPlant.create();
+setUp(options.skip, async (own) => {
+    plant = own(await TinyPlant.create());
     plant.addAlarms();
     // lengthens timeouts, so that a busy machine has no stale or Bad readings, which would raise other alarms
     const tags = join(plant.folder, 'tags.csv');
@@ -40,7 +39,6 @@ beforeEach(async () => {
     await crew.hello();
 });
 afterEach(() => crew?.close());
-after(() => plant?.destroy());
 
 const said = (text) => crew.say({ seq: ++seq, ...text });
 const note = (text, place) => said({ type: 'note', text, ...place });

@@ -3,11 +3,12 @@
 // at all.
 import assert from 'node:assert/strict';
 import { appendFileSync } from 'node:fs';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { burnShift } from '../../clients/web/core/wall.js';
 import { Canvas } from './support/png_pixels.mjs';
 import { get, PlainClient } from './support/plain_client.mjs';
 import { Relay, relayMissing } from './support/relay.mjs';
+import { setUp } from './support/set_up.mjs';
 import { notBuilt, sleep, TinyPlant } from './support/tiny_plant.mjs';
 import { long, promise } from './support/promise.mjs';
 import { until } from './support/until.mjs';
@@ -26,10 +27,8 @@ walls:
 const BEZEL = [20, 10].map((mm) => Math.round((mm * Math.hypot(WIDTH, HEIGHT)) / (10 * 25.4)));
 let plant;
 
-before(async () => {
-    if (options.skip)
-        return;
-    plant = await TinyPlant.create();
+setUp(options.skip, async (own) => {
+    plant = own(await TinyPlant.create());
     appendFileSync(plant.file, WALLS);
     plant.keepFresh();
     await plant.start();
@@ -39,7 +38,6 @@ before(async () => {
     for (let read = []; read.length === 0 || read.some(({ name, value }) => value !== values[name]); await sleep(20))
         ({ tags: read } = JSON.parse((await get(plant.port, '/api/v1/tags')).body));
 });
-after(() => plant?.destroy());
 
 async function tileOf(wall, display, { port = plant.port, codecs = ['png'], ...more } = {}) {
     const client = await PlainClient.open(port);

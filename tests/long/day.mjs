@@ -8,11 +8,12 @@ import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { appendFileSync, existsSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { setTimeout as sleep } from 'node:timers/promises';
 import { isDeepStrictEqual } from 'node:util';
 import { missingClocks, SetClock } from '../e2e/support/clocks.mjs';
 import { get } from '../e2e/support/plain_client.mjs';
+import { setUp } from '../e2e/support/set_up.mjs';
 import { BIN, missing, runProgram, TinyPlant } from '../e2e/support/tiny_plant.mjs';
 
 const SERIES = resolve('../shared/data/sensors/hydraulic/hydraulic_ts_1hz.csv'), MINUTES = Number(process.env.MINUTES ?? 60);
@@ -144,10 +145,8 @@ function slope(rows, key) {
     return mean((row) => (row.hours - t) * (row[key] - y)) / mean((row) => (row.hours - t) ** 2);
 }
 
-before(async () => {
-    if (skip)
-        return;
-    plant = await TinyPlant.create();
+setUp(skip, async (own) => {
+    plant = own(await TinyPlant.create());
     appendFileSync(plant.file, 'history: { keep_days: 36500 }\n');
     clock = new SetClock(join(plant.folder, 'clock'));
     plant.confine(...clock.starter());
@@ -155,7 +154,6 @@ before(async () => {
     await plant.startSim('--values', SERIES, '--map', 'TI-1=TS1', '--map', 'TI-2=TS4', '--speed', '24', '--loop');
     await plant.startDaemon();
 });
-after(() => plant?.destroy());
 
 test(`a day's life in ${MINUTES} minutes`, { skip, timeout: (MINUTES + 20) * 60000 }, async () => {
     const began = Date.now(), rows = [];

@@ -4,8 +4,9 @@
 import assert from 'node:assert/strict';
 import { existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { setTimeout as sleep } from 'node:timers/promises';
+import { setUp } from '../e2e/support/set_up.mjs';
 import { missing, TinyPlant } from '../e2e/support/tiny_plant.mjs';
 
 const SERIES = resolve('../shared/data/sensors/hydraulic/hydraulic_ts_1hz.csv');
@@ -24,10 +25,8 @@ PI-1,400005,Float,bar,pump,pressure,P-101A,3,0,0.5,1,0.01
 const now = () => Date.now() / 1000;
 let plant, started, spike, gap;
 
-before(async () => {
-    if (skip)
-        return;
-    plant = await TinyPlant.create();
+setUp(skip, async (own) => {
+    plant = own(await TinyPlant.create());
     writeFileSync(join(plant.folder, 'tags.csv'), TAGS);
     assert.equal(plant.prepare().code, 0);
     await plant.startSim('--values', SERIES, '--map', 'TI-1=TS1', '--map', 'TI-2=TS4', '--speed', String(SPEED));
@@ -51,7 +50,6 @@ before(async () => {
     gap.to = now();
     await sleep(Math.max(0, (started + WALL_S + 2 - now()) * 1000));
 });
-after(() => plant?.destroy());
 
 const history = async (tag, from, to) => {
     const query = new URLSearchParams({ tags: tag, from: from.toFixed(3), to: to.toFixed(3), points: 20000 });

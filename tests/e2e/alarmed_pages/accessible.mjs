@@ -3,10 +3,11 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { alarmed } from './alarmed.mjs';
 import { drawnAt, openPage, PHONE, shoot, TABLET, travel, waitForPicture } from '../support/browser.mjs';
 import { cutOff, everyPanel } from '../support/panels.mjs';
+import { setUp } from '../support/set_up.mjs';
 import { sweep, takes } from '../support/sweep.mjs';
 import { notBuilt } from '../support/tiny_plant.mjs';
 import { becomes } from '../support/until.mjs';
@@ -29,16 +30,11 @@ const PARTS = {
 };
 let url, browser, page;
 
-before(async () => {
-    if (options.skip)
-        return;
+setUp(options.skip, async (own) => {
     [, url] = await alarmed();
-    browser = await openPage(url, SCREEN);
+    browser = own(await openPage(url, SCREEN));
     page = browser.page;
     await waitForPicture(page);
-});
-after(async () => {
-    await browser?.close();
 });
 
 // Returns axe-core's findings. within: checks only matching elements; null: the whole page.

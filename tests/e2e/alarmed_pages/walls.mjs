@@ -3,9 +3,10 @@
 // age are shown completely and do not cover the picture.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
-import { after, before, test } from 'node:test';
+import { after, test } from 'node:test';
 import { openPage, shoot, waitForPicture } from '../support/browser.mjs';
 import { startAlarmed } from '../support/panels.mjs';
+import { setUp } from '../support/set_up.mjs';
 import { sweep } from '../support/sweep.mjs';
 import { notBuilt } from '../support/tiny_plant.mjs';
 import { becomes } from '../support/until.mjs';
@@ -18,9 +19,7 @@ const WALLS = [
 ];
 let plant, url;
 
-before(async () => {
-    if (options.skip)
-        return;
+setUp(options.skip, async () => {
     [plant, url] = await startAlarmed((file) => // simulated data shows an additional notice
         writeFileSync(file, readFileSync(file, 'utf8').replace('type: modbus,', 'type: modbus, simulated: yes,')));
 });

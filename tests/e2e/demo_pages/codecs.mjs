@@ -5,13 +5,14 @@ import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { before, test } from 'node:test';
+import { test } from 'node:test';
 import { folderOfTests } from '../support/folders.mjs';
 import { demo } from './demo.mjs';
 import { grab, openPage, readPng, settle, shoot, view, waitForPicture } from '../support/browser.mjs';
 import { contrast, deltaE } from '../support/pixels.mjs';
 import { BIN, BUILD, missing } from '../support/plant.mjs';
 import { family, sharedMb } from '../support/processes.mjs';
+import { setUp } from '../support/set_up.mjs';
 
 const why = missing();
 const options = { skip: why ?? false, timeout: 200000 };
@@ -21,9 +22,7 @@ const folder = folderOfTests();
 let plant;
 const drawn = new Map(); // pictures that `plantcast snapshot` has drawn already, by its arguments and readings
 
-before(async () => {
-    if (why)
-        return;
+setUp(why, async () => {
     plant = await demo();
 });
 

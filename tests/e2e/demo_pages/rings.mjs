@@ -3,10 +3,11 @@
 // legend. No ring covers a note. In a low picture, labels are few, and on a phone small. Labels keep away from other rings and
 // from each other.
 import assert from 'node:assert/strict';
-import { before, test } from 'node:test';
+import { test } from 'node:test';
 import { demo } from './demo.mjs';
 import { openPage, PHONE, settle, shoot, TABLET, waitForPicture } from '../support/browser.mjs';
 import { missing } from '../support/plant.mjs';
+import { setUp } from '../support/set_up.mjs';
 import { sweep } from '../support/sweep.mjs';
 import { becomes } from '../support/until.mjs';
 
@@ -30,9 +31,7 @@ const ALARMS = ['TE-161', 'TE-162', 'TE-164', 'VT-161', 'VT-162', 'VT-163', 'VT-
     'TE-211', 'TE-212', 'TE-171', 'TE-101'];
 let plant;
 
-before(async () => {
-    if (why)
-        return;
+setUp(why, async () => {
     plant = await demo();
     for (const tag of ALARMS)
         await plant.ask(`set ${tag} 200`);

@@ -3,28 +3,24 @@
 // equipment, flights to a tag, and the card of a clicked point.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { demo } from './demo.mjs';
 import { drawnAt, openPage, settle, shoot, view, waitForHealth, waitForPicture } from '../support/browser.mjs';
 import { missing } from '../support/plant.mjs';
+import { setUp } from '../support/set_up.mjs';
 import { TinyPlant } from '../support/tiny_plant.mjs';
 
 const why = missing();
 const options = { skip: why ?? false, timeout: 200000 };
 let plant, browser, page;
 
-before(async () => {
-    if (why)
-        return;
+setUp(why, async (own) => {
     plant = await demo();
-    browser = await openPage(plant.url, { viewport: { width: 1200, height: 720 } });
+    browser = own(await openPage(plant.url, { viewport: { width: 1200, height: 720 } }));
     page = browser.page;
     await waitForPicture(page);
     await waitForHealth(page, 'live');
     await settle(page);
-});
-after(async () => {
-    await browser?.close();
 });
 
 // Waits until the camera satisfies `is` and no camera flight is under way.

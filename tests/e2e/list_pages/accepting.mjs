@@ -6,9 +6,10 @@ import { spawnSync } from 'node:child_process';
 import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { DESKTOP, openPage, settle, shoot, waitForPicture } from '../support/browser.mjs';
 import { linesOf } from '../support/lines.mjs';
+import { setUp } from '../support/set_up.mjs';
 import { BIN, missing, runProgram, TinyPlant } from '../support/tiny_plant.mjs';
 import { until } from '../support/until.mjs';
 
@@ -24,10 +25,8 @@ const confidence = (i) => (i < 250 ? 0.95 : 0.6);
 const count = (of) => Array.from({ length: ASSUMED }, (_, i) => i).filter(of).length;
 let plant, browser, page, tagsFile, original;
 
-before(async () => {
-    if (skip)
-        return;
-    plant = await TinyPlant.create();
+setUp(skip, async (own) => {
+    plant = own(await TinyPlant.create());
     tagsFile = join(plant.folder, 'tags.csv');
     const head = readFileSync(tagsFile, 'utf8').replace('Stale s\n', 'Stale s,Place\n');
     const middle = { 'E-101': 0, 'P-101A': 3 }; // x coordinate in metres of the middle of each equipment's box; the boxes are 1 m wide
@@ -43,15 +42,11 @@ before(async () => {
     assert.equal(prepared.code, 0, prepared.err);
     await plant.startSim();
     await plant.startDaemon('--audit', join(plant.folder, 'audit.log'));
-    browser = await openPage(`http://127.0.0.1:${plant.port}/?lang=en`, DESKTOP);
+    browser = own(await openPage(`http://127.0.0.1:${plant.port}/?lang=en`, DESKTOP));
     page = browser.page;
     await waitForPicture(page);
     await page.locator('#engineer-toggle').click();
     await page.locator('#engineer .accept summary').click();
-});
-after(async () => {
-    await browser?.close();
-    await plant?.destroy();
 });
 
 const says = (selector, text) => page.waitForFunction(([where, what]) =>

@@ -3,9 +3,10 @@
 // acknowledge and shelve them and fly to their tags.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { DESKTOP, openPage, settle, shoot, TABLET, view, waitForHealth, waitForPicture } from '../support/browser.mjs';
 import { missing, startPlant } from '../support/plant.mjs';
+import { setUp } from '../support/set_up.mjs';
 import { becomes, until } from '../support/until.mjs';
 
 const why = missing();
@@ -13,11 +14,9 @@ const options = { skip: why ?? false, timeout: 200000 };
 const HOT = 'TE-101', LOW = 'TE-101';
 let plant, browser, page, tags;
 
-before(async () => {
-    if (why)
-        return;
-    plant = await startPlant('\nalarms: local\n');
-    browser = await openPage(plant.url, DESKTOP);
+setUp(why, async (own) => {
+    plant = own(await startPlant('\nalarms: local\n'));
+    browser = own(await openPage(plant.url, DESKTOP));
     page = browser.page;
     await waitForPicture(page);
     await waitForHealth(page, 'live');
@@ -26,10 +25,6 @@ before(async () => {
     for (const { name, limits } of tags.filter((tag) => tag.limits.H !== null)) // sets all values between their limits L and H
         await plant.ask(`set ${name} ${((limits.L ?? 0) + limits.H) / 2}`);
     await page.waitForFunction(() => globalThis.plantcast.session.model.alarms.counts().active === 0);
-});
-after(async () => {
-    await browser?.close();
-    await plant?.stop();
 });
 
 const words = () => page.locator('#alarm-words').textContent();

@@ -4,8 +4,9 @@
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { drawnAt, openPage, settle, shoot, view, waitForPicture } from '../support/browser.mjs';
+import { setUp } from '../support/set_up.mjs';
 import { sweep } from '../support/sweep.mjs';
 import { notBuilt, TinyPlant } from '../support/tiny_plant.mjs';
 import { becomes } from '../support/until.mjs';
@@ -38,22 +39,16 @@ function makeLarge(folder) {
     writeFileSync(join(folder, 'tags.csv'), `${tags.join('\n')}\n`);
 }
 
-before(async () => {
-    if (options.skip)
-        return;
-    plant = await TinyPlant.create();
+setUp(options.skip, async (own) => {
+    plant = own(await TinyPlant.create());
     makeLarge(plant.folder);
     const { code, err, out } = plant.prepare();
     assert.equal(code, 0, err + out);
     await plant.startSim();
     await plant.startDaemon();
-    browser = await openPage(`http://127.0.0.1:${plant.port}/`, { viewport: { width: 1280, height: 720 } });
+    browser = own(await openPage(`http://127.0.0.1:${plant.port}/`, { viewport: { width: 1280, height: 720 } }));
     page = browser.page;
     await waitForPicture(page);
-});
-after(async () => {
-    await browser?.close();
-    await plant?.destroy();
 });
 
 test('the list shows areas, assets and tags, and a search finds each of 20,000', options, async () => {

@@ -4,8 +4,9 @@
 import assert from 'node:assert/strict';
 import { chmodSync, existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { DESKTOP, drawnAt, land, openPage, settle, shoot, TABLET, waitForPicture } from '../support/browser.mjs';
+import { setUp } from '../support/set_up.mjs';
 import { missing, TinyPlant } from '../support/tiny_plant.mjs';
 import { until } from '../support/until.mjs';
 
@@ -14,10 +15,8 @@ const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : !existsSync
 const options = { skip, timeout: 200000 };
 let plant, browser, page, tagsFile;
 
-before(async () => {
-    if (skip)
-        return;
-    plant = await TinyPlant.create();
+setUp(skip, async (own) => {
+    plant = own(await TinyPlant.create());
     tagsFile = join(plant.folder, 'tags.csv');
     plant.keepFresh();
     writeFileSync(tagsFile, `${readFileSync(tagsFile, 'utf8')}TI-9,400007,Float,°C,spare,temperature,,,,,600\n`);
@@ -26,13 +25,9 @@ before(async () => {
     await plant.set({ 'TI-1': 80, 'TI-2': 20, 'TI-9': 50, 'PI-1': 5 });
     plant.disown();
     await plant.startDaemon();
-    browser = await openPage(`http://127.0.0.1:${plant.port}/`, DESKTOP);
+    browser = own(await openPage(`http://127.0.0.1:${plant.port}/`, DESKTOP));
     page = browser.page;
     await ready(page);
-});
-after(async () => {
-    await browser?.close();
-    await plant?.destroy();
 });
 
 async function ready(on) {

@@ -2,8 +2,9 @@
 // After every part of the page was opened and closed, and after alarms were raised and cleared, the page has no more nodes,
 // listeners or memory than before.
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { openPage, settle, travel, waitForHealth, waitForPicture } from '../support/browser.mjs';
+import { setUp } from '../support/set_up.mjs';
 import { notBuilt, startTiny } from '../support/tiny_plant.mjs';
 
 const options = { skip: notBuilt(), timeout: 300000 };
@@ -18,11 +19,9 @@ const TRIES = 40, PAUSE_MS = 250;
 const JITLESS = ['--js-flags=--jitless'];
 let plant, browser, page, devTools;
 
-before(async () => {
-    if (options.skip)
-        return;
-    plant = await startTiny();
-    browser = await openPage(plant.url, { viewport: { width: 1280, height: 800 }, args: JITLESS });
+setUp(options.skip, async (own) => {
+    plant = own(await startTiny());
+    browser = own(await openPage(plant.url, { viewport: { width: 1280, height: 800 }, args: JITLESS }));
     page = browser.page;
     await waitForPicture(page);
     await waitForHealth(page, 'live');
@@ -34,10 +33,6 @@ before(async () => {
     devTools = await page.context().newCDPSession(page);
     await devTools.send('Performance.enable');
     await devTools.send('HeapProfiler.enable');
-});
-after(async () => {
-    await browser?.close();
-    await plant?.stop();
 });
 
 async function measure() {

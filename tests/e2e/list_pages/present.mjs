@@ -4,8 +4,9 @@
 import assert from 'node:assert/strict';
 import { appendFileSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { after, test } from 'node:test';
 import { openPage, resize, settle, shoot, travel, waitForHealth, waitForPicture } from '../support/browser.mjs';
+import { setUp } from '../support/set_up.mjs';
 import { notBuilt, TinyPlant } from '../support/tiny_plant.mjs';
 import { becomes } from '../support/until.mjs';
 
@@ -13,9 +14,7 @@ const options = { skip: notBuilt(), timeout: 200000 };
 const SCREEN = { viewport: { width: 1280, height: 720 } };
 let plant, url, desk, german, wall;
 
-before(async () => {
-    if (options.skip)
-        return;
+setUp(options.skip, async () => {
     plant = await TinyPlant.create();
     // a timeout of 2 s instead of 0.3 s, because on a busy machine a late answer of the device would raise an alarm
     writeFileSync(plant.file, readFileSync(plant.file, 'utf8').replace('timeout_ms: 300', 'timeout_ms: 2000'));

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A value in a PLC's register appears in a browser's pixels; and recovery after the daemon died.
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { isDeepStrictEqual } from 'node:util';
 import {
     arrive, grab, held, markers, openPage, pageOf, settle, shoot, view, waitForChange, waitForHealth, waitForPicture,
 } from '../support/browser.mjs';
 import { contrast, countOutside, difference, meanAround } from '../support/pixels.mjs';
 import { missing, startPlant } from '../support/plant.mjs';
+import { setUp } from '../support/set_up.mjs';
 import { sweep } from '../support/sweep.mjs';
 import { until } from '../support/until.mjs';
 
@@ -18,16 +19,10 @@ const SCREEN = { viewport: sweep({ width: 1920, height: 1080 }, { width: 1024, h
 const QUIET_MS = 1500; // longer than any picture takes to draw
 let plant, browser, page;
 
-before(async () => {
-    if (why)
-        return;
-    plant = await startPlant();
-    browser = await openPage(plant.url, SCREEN);
+setUp(why, async (own) => {
+    plant = own(await startPlant());
+    browser = own(await openPage(plant.url, SCREEN));
     page = browser.page;
-});
-after(async () => {
-    await browser?.close();
-    await plant?.stop();
 });
 
 // Returns the asset's bounding box in the picture, with a margin because encoding blurs edges.

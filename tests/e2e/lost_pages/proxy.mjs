@@ -7,10 +7,11 @@ import { createServer, request } from 'node:http';
 import { createServer as createSecureServer } from 'node:https';
 import { connect } from 'node:net';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { DESKTOP, openPage, PHONE, shoot, waitForPicture } from '../support/browser.mjs';
 import { freePort } from '../support/ports.mjs';
 import { makeCertificate } from '../support/receivers.mjs';
+import { setUp } from '../support/set_up.mjs';
 import { notBuilt, Program, runProgram, TinyPlant } from '../support/tiny_plant.mjs';
 import { until } from '../support/until.mjs';
 
@@ -20,13 +21,10 @@ const options = { skip: notBuilt(), timeout: 200000 };
 const withNginx = { ...options, skip: options.skip || (existsSync(NGINX) ? false : 'nginx is not installed') };
 let plant;
 
-before(async () => {
-    if (options.skip)
-        return;
-    plant = await TinyPlant.create();
+setUp(options.skip, async (own) => {
+    plant = own(await TinyPlant.create());
     await plant.start();
 });
-after(() => plant?.destroy());
 
 // Starts nginx, which serves the plant below /plantcast/. more: further configuration lines for that location; host: host name
 // that nginx passes on.

@@ -6,9 +6,10 @@ import { spawnSync } from 'node:child_process';
 import { createHash, X509Certificate } from 'node:crypto';
 import { appendFileSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { openPage, settle, shoot, TABLET, waitForHealth, waitForPicture } from '../support/browser.mjs';
 import { Relay, relayMissing } from '../support/relay.mjs';
+import { setUp } from '../support/set_up.mjs';
 import { sweep } from '../support/sweep.mjs';
 import { missing, TinyPlant } from '../support/tiny_plant.mjs';
 import { becomes, until } from '../support/until.mjs';
@@ -18,10 +19,8 @@ const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : 
 const SIZE = sweep({ width: 3840, height: 2160 }, { width: 1920, height: 1080 }), WALL = { viewport: SIZE, screen: SIZE };
 let plant, url;
 
-before(async () => {
-    if (options.skip)
-        return;
-    plant = await TinyPlant.create();
+setUp(options.skip, async (own) => {
+    plant = own(await TinyPlant.create());
     plant.keepFresh();
     appendFileSync(plant.file, 'alarms: local\n');
     const tags = join(plant.folder, 'tags.csv');
@@ -30,7 +29,6 @@ before(async () => {
     await plant.set({ 'TI-1': 95.5, 'TI-2': 20, 'PI-1': 5 });
     url = `http://127.0.0.1:${plant.port}/`;
 });
-after(() => plant?.destroy());
 
 async function withPage(address, screen, f, init = null) {
     const browser = await openPage(address, screen, init);

@@ -4,8 +4,9 @@
 import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { DESKTOP, FLYING, openPage, PHONE, settle, shoot, waitForPicture } from '../support/browser.mjs';
+import { setUp } from '../support/set_up.mjs';
 import { notBuilt, runProgram, TinyPlant } from '../support/tiny_plant.mjs';
 
 const options = { skip: notBuilt(), timeout: 200000 };
@@ -43,10 +44,8 @@ function tank(around = 48, up = 24) {
 const address = (n) => 400001 + 2 * n;
 const speedTag = (degrees) => `WS-${degrees}`, bearingTag = (degrees) => `WD-${degrees}`;
 
-before(async () => {
-    if (options.skip)
-        return;
-    plant = await TinyPlant.create();
+setUp(options.skip, async (own) => {
+    plant = own(await TinyPlant.create());
     writeFileSync(join(plant.folder, 'tank.gltf'), tank());
     writeFileSync(plant.file, `plant: { name: Wind, view: { eye: [3.2, -3.2, 1.6], target: [0, 0, 0] } }
 assets:
@@ -74,12 +73,8 @@ tags: tags.csv
         // sets directions that run counter-clockwise around the tank, seen from above
         await plant.tell(`set ${bearingTag(degrees)} ${(360 - degrees) % 360}`);
     }
-    browser = await openPage(`http://127.0.0.1:${plant.port}/`, { ...DESKTOP, ...FLYING });
+    browser = own(await openPage(`http://127.0.0.1:${plant.port}/`, { ...DESKTOP, ...FLYING }));
     await waitForPicture(browser.page);
-});
-after(async () => {
-    await browser?.close();
-    await plant?.destroy();
 });
 
 // Returns the arrows that the page got with its picture, rows of [x, y, dx, dy, value, uncertain, half], and the picture's

@@ -2,25 +2,20 @@
 // Moving a section plane or section box with the arrows drawn on the picture: on the plane, on each side of the box, and for
 // the whole box; in both halves of a split picture; by mouse, keyboard and touch.
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { drawnAt, openPage, settle, shoot, TABLET, waitForPicture } from '../support/browser.mjs';
+import { setUp } from '../support/set_up.mjs';
 import { notBuilt, TinyPlant } from '../support/tiny_plant.mjs';
 
 const options = { skip: notBuilt(), timeout: 200000 };
 let plant, url, browser, page;
 
-before(async () => {
-    if (options.skip)
-        return;
-    plant = await TinyPlant.running({ fresh: true });
+setUp(options.skip, async (own) => {
+    plant = own(await TinyPlant.running({ fresh: true }));
     url = `http://127.0.0.1:${plant.port}/`;
-    browser = await openPage(url, { viewport: { width: 1280, height: 800 } });
+    browser = own(await openPage(url, { viewport: { width: 1280, height: 800 } }));
     page = browser.page;
     await waitForPicture(page);
-});
-after(async () => {
-    await browser?.close();
-    await plant?.destroy();
 });
 
 const setClip = async (on, clip) => {

@@ -4,8 +4,9 @@
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { openPage, shoot, waitForHealth, waitForPicture } from '../support/browser.mjs';
+import { setUp } from '../support/set_up.mjs';
 import { notBuilt, TinyPlant } from '../support/tiny_plant.mjs';
 
 const options = { skip: notBuilt(), timeout: 120000 };
@@ -13,10 +14,8 @@ const MANY = 100, ACROSS = 10, REACH_PX = 15; // REACH_PX: distance within which
 const TO_THE_SIDE = { eye: [3.25, 0, 0], target: [0, 0, 0], up: [0, 0, 1], fov: 45 };
 let plant, browser;
 
-before(async () => {
-    if (options.skip)
-        return;
-    plant = await TinyPlant.create();
+setUp(options.skip, async (own) => {
+    plant = own(await TinyPlant.create());
     const file = join(plant.folder, 'tags.csv'), at = (n) => ((n - (ACROSS - 1) / 2) * 0.07).toFixed(3);
     const lines = Array.from({ length: MANY }, (_, i) =>
         `X-${i},${400101 + 2 * i},Float,°C,one of many,temperature,E-101,0.5,${at(i % ACROSS)},${at(Math.floor(i / ACROSS))},9`);
@@ -26,11 +25,7 @@ before(async () => {
     assert.equal(code, 0, err);
     await plant.startSim();
     await plant.startDaemon();
-    browser = await openPage(`http://127.0.0.1:${plant.port}/?lang=en`, { viewport: { width: 900, height: 700 } });
-});
-after(async () => {
-    await browser?.close();
-    await plant?.destroy();
+    browser = own(await openPage(`http://127.0.0.1:${plant.port}/?lang=en`, { viewport: { width: 900, height: 700 } }));
 });
 
 const look = (page) => page.evaluate((reach) => {

@@ -4,8 +4,9 @@
 import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { openPage, settle, shoot, waitForHealth, waitForPicture } from '../support/browser.mjs';
+import { setUp } from '../support/set_up.mjs';
 import { notBuilt, runProgram, TinyPlant } from '../support/tiny_plant.mjs';
 
 const options = { skip: notBuilt(), timeout: 120000 };
@@ -32,10 +33,8 @@ function series() {
     return `${lines.join('\n')}\n`;
 }
 
-before(async () => {
-    if (options.skip)
-        return;
-    plant = await TinyPlant.create();
+setUp(options.skip, async (own) => {
+    plant = own(await TinyPlant.create());
     writeFileSync(join(plant.folder, 'tags.csv'), TAGS);
     assert.equal(plant.prepare().code, 0);
     writeFileSync(join(plant.folder, 'series.csv'), series());
@@ -45,7 +44,6 @@ before(async () => {
     await plant.startDaemon();
     url = `http://127.0.0.1:${plant.port}/`;
 });
-after(() => plant?.destroy());
 
 const ask = async (query) => {
     const answer = await fetch(`${url}api/v1/drift?${query}`);

@@ -4,8 +4,9 @@
 import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { openPage, waitForPicture } from '../support/browser.mjs';
+import { setUp } from '../support/set_up.mjs';
 import { notBuilt, runProgram, startTiny } from '../support/tiny_plant.mjs';
 
 const why = notBuilt();
@@ -23,21 +24,15 @@ function remember({ folder, file }) {
     assert.equal(code, 0, err);
 }
 
-before(async () => {
-    if (why)
-        return;
-    plant = await startTiny('', [], remember);
-    browser = await openPage(plant.url, { viewport: { width: 1440, height: 900 } });
+setUp(why, async (own) => {
+    plant = own(await startTiny('', [], remember));
+    browser = own(await openPage(plant.url, { viewport: { width: 1440, height: 900 } }));
     page = browser.page;
     await waitForPicture(page);
     await page.waitForFunction(() => globalThis.plantcast.session.recorded);
     await plant.ask('set TI-1 95');
     await page.waitForFunction(() => [...globalThis.plantcast.session.model.alarms.rows.values()]
         .some(({ state }) => state === 'unacknowledged'));
-});
-after(async () => {
-    await browser?.close();
-    await plant?.stop();
 });
 
 // Clicks on an element and counts it. Clicks are counted here, not in the page, because the browser's driver clicks again if an

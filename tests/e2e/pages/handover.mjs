@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The report for the shift handover, as a page and as a PDF: notes, alarms, who acknowledged them, and who shelved them.
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { openPage, shoot, waitForPicture } from '../support/browser.mjs';
+import { setUp } from '../support/set_up.mjs';
 import { notBuilt, startTiny } from '../support/tiny_plant.mjs';
 import { until } from '../support/until.mjs';
 
@@ -10,11 +11,9 @@ const why = notBuilt();
 const options = { skip: why, timeout: 200000 };
 let plant, browser, page;
 
-before(async () => {
-    if (why)
-        return;
-    plant = await startTiny();
-    browser = await openPage(plant.url, { viewport: { width: 1000, height: 1100 } });
+setUp(why, async (own) => {
+    plant = own(await startTiny());
+    browser = own(await openPage(plant.url, { viewport: { width: 1000, height: 1100 } }));
     page = browser.page;
     await waitForPicture(page);
     await plant.ask('set TI-1 95');
@@ -37,10 +36,6 @@ before(async () => {
             .every(({ tag, state }) => tag.name !== name || ['acknowledged', 'shelved'].includes(state))));
     await plant.ask('set PI-1 95'); // the only alarm that nobody has acknowledged
     await raised('PI-1');
-});
-after(async () => {
-    await browser?.close();
-    await plant?.stop();
 });
 
 test('the handover page lists notes, alarms, acknowledgements and shelved alarms of the shift', options, async () => {

@@ -2,8 +2,9 @@
 // Named views, in the plant file or saved by users on the page: all users see them, in the same order, and earlier versions of
 // a saved view can be restored.
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { land, openPage, settle, shoot, view, waitForPicture } from '../support/browser.mjs';
+import { setUp } from '../support/set_up.mjs';
 import { notBuilt, startTiny } from '../support/tiny_plant.mjs';
 
 const why = notBuilt();
@@ -11,17 +12,11 @@ const options = { skip: why, timeout: 200000 };
 const FROM_ABOVE = 'group=temperature&colormap=turbo&camera=8,2,30,8,6,0,0,0,1,45';
 let plant, browser, page;
 
-before(async () => {
-    if (why)
-        return;
-    plant = await startTiny(`views:\n- { id: above, title: From above, view: "${FROM_ABOVE}" }\n`);
-    browser = await openPage(plant.url, { viewport: { width: 1200, height: 720 } });
+setUp(why, async (own) => {
+    plant = own(await startTiny(`views:\n- { id: above, title: From above, view: "${FROM_ABOVE}" }\n`));
+    browser = own(await openPage(plant.url, { viewport: { width: 1200, height: 720 } }));
     page = browser.page;
     await waitForPicture(page);
-});
-after(async () => {
-    await browser?.close();
-    await plant?.stop();
 });
 
 const rows = (at) => at.locator('#named-list li .named-open span').allTextContents();

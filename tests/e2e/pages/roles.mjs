@@ -4,8 +4,9 @@
 import assert from 'node:assert/strict';
 import { appendFileSync, chmodSync, existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { after, test } from 'node:test';
 import { openPage, PHONE, settle, shoot, TABLET, waitForHealth, waitForPicture } from '../support/browser.mjs';
+import { setUp } from '../support/set_up.mjs';
 import { missing, runProgram, TinyPlant } from '../support/tiny_plant.mjs';
 import { becomes } from '../support/until.mjs';
 
@@ -20,9 +21,7 @@ let plant, browsers, flags;
 
 const setMode = (mode) => writeFileSync(plant.file, readFileSync(plant.file, 'utf8').replace(/^alarms: \w+$/m, `alarms: ${mode}`));
 
-before(async () => {
-    if (skip)
-        return;
+setUp(skip, async () => {
     plant = await TinyPlant.create();
     appendFileSync(plant.file, 'alarms: local\nviews: [{ id: strong, title: Strong, view: "group=temperature&strength=2&power=3" }]\n');
     plant.keepFresh(); // prevents readings from becoming stale, so that no alarm exists except the one that the test raises

@@ -4,10 +4,11 @@
 import assert from 'node:assert/strict';
 import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { arrive, openPage, SCREENSHOTS, settle, SHOOTS, waitForHealth, waitForPicture } from '../support/browser.mjs';
 import { missing, startPlant } from '../support/plant.mjs';
 import { promise } from '../support/promise.mjs';
+import { setUp } from '../support/set_up.mjs';
 import { runProgram } from '../support/tiny_plant.mjs';
 import { becomes } from '../support/until.mjs';
 
@@ -32,19 +33,13 @@ async function remember({ file, ask }) {
     assert.equal(code, 0, err);
 }
 
-before(async () => {
-    if (why)
-        return;
-    plant = await startPlant('\nalarms: local\n', remember);
-    browser = await openPage(plant.url, { viewport: { width: 1280, height: 800 } });
+setUp(why, async (own) => {
+    plant = own(await startPlant('\nalarms: local\n', remember));
+    browser = own(await openPage(plant.url, { viewport: { width: 1280, height: 800 } }));
     page = browser.page;
     await waitForPicture(page);
     await waitForHealth(page, 'live');
     began = performance.now();
-});
-after(async () => {
-    await browser?.close();
-    await plant?.stop();
 });
 
 async function keep(name) {

@@ -2,10 +2,11 @@
 // Markers and labels move together with the picture while the user moves it over a slow link: each is drawn where the frame on
 // the screen shows its point, not where the page's newest camera would show it.
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { openPage, settle, shoot, TABLET, waitForPicture } from '../support/browser.mjs';
 import { promise } from '../support/promise.mjs';
 import { Relay, relayMissing } from '../support/relay.mjs';
+import { setUp } from '../support/set_up.mjs';
 import { sweep } from '../support/sweep.mjs';
 import { projector } from '../../../clients/web/core/camera.js';
 import { missing, TinyPlant } from '../support/tiny_plant.mjs';
@@ -23,17 +24,11 @@ const MARK_PX = 1, PICTURE_PX = 5;
 const WARPED_PX = 8, WARPED_SHARE = 0.002; // WARPED_SHARE: maximum share of coloured pixels that lie farther than WARPED_PX beyond the box
 let plant, relay;
 
-before(async () => {
-    if (options.skip)
-        return;
-    plant = await TinyPlant.running({ fresh: true });
+setUp(options.skip, async (own) => {
+    plant = own(await TinyPlant.running({ fresh: true }));
     await plant.tell('set TI-1 94');
     await plant.tell('set TI-2 94'); // both sensors have the same value, so that the whole field has one colour
-    relay = await Relay.open(plant.port, { bytesPerS: 4e6, delayMs: 120 });
-});
-after(async () => {
-    relay?.close();
-    await plant?.destroy();
+    relay = own(await Relay.open(plant.port, { bytesPerS: 4e6, delayMs: 120 }));
 });
 
 // Records for every drawn frame: where markers and the box's corners should be, projected by this test's own code with that

@@ -3,9 +3,10 @@
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { arrive, openPage, PHONE, settle, shoot, TABLET, travel, waitForHealth, waitForPicture } from '../support/browser.mjs';
 import { contrastRatio } from '../support/pixels.mjs';
+import { setUp } from '../support/set_up.mjs';
 import { notBuilt, runProgram, sleep, TinyPlant } from '../support/tiny_plant.mjs';
 import { becomes, until } from '../support/until.mjs';
 
@@ -25,10 +26,8 @@ function series() {
     return `${lines.join('\n')}\n`;
 }
 
-before(async () => {
-    if (options.skip)
-        return;
-    plant = await TinyPlant.create();
+setUp(options.skip, async (own) => {
+    plant = own(await TinyPlant.create());
     plant.giveDeviceTime();
     const tags = join(plant.folder, 'tags.csv'), [head, ...rows] = readFileSync(tags, 'utf8').trim().split('\n');
     const limits = { 'TI-1': '90,95', 'TI-2': '85,90' };
@@ -43,15 +42,11 @@ before(async () => {
     // sets values within the limits, so that only the tests raise alarms
     await plant.set({ 'TI-1': 50, 'TI-2': 40, 'PI-1': 5 });
     await plant.startDaemon();
-    browser = await openPage(`http://127.0.0.1:${plant.port}/`, { viewport: { width: 1280, height: 720 } });
+    browser = own(await openPage(`http://127.0.0.1:${plant.port}/`, { viewport: { width: 1280, height: 720 } }));
     page = browser.page;
     await waitForPicture(page);
     await waitForHealth(page, 'live');
     await page.waitForFunction(() => globalThis.plantcast.session.time.fromUs);
-});
-after(async () => {
-    await browser?.close();
-    await plant?.destroy();
 });
 
 const shown = (on = page) => on.evaluate(() => {

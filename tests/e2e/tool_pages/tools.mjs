@@ -4,33 +4,28 @@
 import assert from 'node:assert/strict';
 import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, afterEach, before, test } from 'node:test';
+import { afterEach, test } from 'node:test';
 import jsqr from 'jsqr';
 import {
     drawnAt, grab, openPage, PHONE, readPng, SCREENSHOTS, settle, shoot, SHOOTS, TABLET, view, waitForHealth, waitForPicture,
 } from '../support/browser.mjs';
 import { contrast, deltaE } from '../support/pixels.mjs';
+import { setUp } from '../support/set_up.mjs';
 import { notBuilt, TinyPlant } from '../support/tiny_plant.mjs';
 
 const options = { skip: notBuilt(), timeout: 200000 };
 const SCREEN = { viewport: { width: 1280, height: 800 } };
 let plant, url, browser, page;
 
-before(async () => {
-    if (options.skip)
-        return;
-    plant = await TinyPlant.running({ fresh: true });
+setUp(options.skip, async (own) => {
+    plant = own(await TinyPlant.running({ fresh: true }));
     url = `http://127.0.0.1:${plant.port}/`;
-    browser = await openPage(url, SCREEN);
+    browser = own(await openPage(url, SCREEN));
     page = browser.page;
     await waitForPicture(page);
     await waitForHealth(page, 'live');
     await page.waitForFunction(() => globalThis.plantcast.session.time.fromUs !== undefined && globalThis.plantcast.session.recorded);
     await settle(page);
-});
-after(async () => {
-    await browser?.close();
-    await plant?.destroy();
 });
 
 // Closes dialogs that a failed test left open.
