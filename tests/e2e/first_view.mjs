@@ -5,7 +5,7 @@ import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { arrive, openPage, PHONE, shoot, TABLET, waitForPicture } from './support/browser.mjs';
+import { arrive, PHONE, shoot, TABLET, waitForPicture, withPage } from './support/browser.mjs';
 import { startAlarmed } from './support/panels.mjs';
 import { sweep } from './support/sweep.mjs';
 import { notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
@@ -27,8 +27,7 @@ after(() => plant?.destroy());
 
 for (const [name, screen] of Object.entries(SCREENS))
     test(`the first view fills the picture, and nothing lies under the legend: ${name}`, options, async (t) => {
-        const { page, close, errors } = await openPage(`${url}?lang=en`, screen);
-        try {
+        await withPage(`${url}?lang=en`, screen, async (page) => {
             await waitForPicture(page);
             await page.locator('.legend:visible').first().waitFor();
             await arrive(page);
@@ -55,10 +54,7 @@ for (const [name, screen] of Object.entries(SCREENS))
             assert.ok(left >= 0 && top >= freeTop && right <= freeRight && bottom <= seen.height,
                 'the plant lies in sight and not under the legend');
             assert.ok(Math.max(across, up) >= 0.7 && rims.every((rim) => rim <= 0.1));
-            assert.deepEqual(errors, []);
-        } finally {
-            await close();
-        }
+        });
     });
 
 // The plant lies at survey coordinates (far from the origin), except for one box at the origin, as some CAD models contain.
@@ -79,8 +75,7 @@ test('a notice names assets far outside the first view, and its button shows eve
             ['en', SCREENS.desk, 'Outside the first view, up to 7012 km away: STRAY', 'Show everything'],
             ['de', SCREENS.desk, 'Außerhalb der ersten Ansicht, bis 7012 km entfernt: STRAY', 'Alles zeigen'],
             ['ko', PHONE, '첫 화면 밖, 최대 7012 km 거리: STRAY', '전체 보기']]) {
-            const { page, close, errors } = await openPage(`http://127.0.0.1:${far.port}/?lang=${language}`, screen);
-            try {
+            await withPage(`http://127.0.0.1:${far.port}/?lang=${language}`, screen, async (page) => {
                 await waitForPicture(page);
                 const notice = page.locator('.chip.outside');
                 await notice.waitFor();
@@ -96,10 +91,7 @@ test('a notice names assets far outside the first view, and its button shows eve
                 await shoot(page, `outside-all-${language}`);
                 await notice.locator('button').last().click();
                 await notice.waitFor({ state: 'hidden' });
-                assert.deepEqual(errors, []);
-            } finally {
-                await close();
-            }
+            });
         }
     } finally {
         await far.destroy();

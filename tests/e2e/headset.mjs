@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { test } from 'node:test';
-import { openPage, readPng, SHOOTS, SCREENSHOTS, waitForHealth, waitForPicture } from './support/browser.mjs';
+import { DESKTOP, openPage, readPng, SCREENSHOTS, SHOOTS, waitForHealth, waitForPicture, withPage } from './support/browser.mjs';
 import { aimAt, enterVr, EYE, eyesPng, headsetScript, IPD_M, lookFrom, pull, SCREEN, seen } from './support/headset.mjs';
 import { setUp } from './support/set_up.mjs';
 import { notBuilt, TinyPlant } from './support/tiny_plant.mjs';
@@ -38,17 +38,14 @@ const hasEnded = (page) => page.waitForFunction(() => !globalThis.plantcast.modu
 const keep = async (page, name) => SHOOTS && writeFileSync(`${SCREENSHOTS}/${name}.png`, await eyesPng(page));
 
 test('the VR button is shown only if there is a headset and the server sends depth', options, async () => {
-    const { page, close } = await openPage(`http://127.0.0.1:${plant.port}/`);
-    try {
+    await withPage(`http://127.0.0.1:${plant.port}/`, DESKTOP, async (page) => {
         await waitForPicture(page);
         await page.waitForFunction(() => globalThis.plantcast.modules);
         assert.equal(await page.evaluate(() => document.featurePolicy.allowsFeature('xr-spatial-tracking')), true);
         assert.equal(await page.locator('#enter-vr').count(), 0);
         const files = await page.evaluate(() => performance.getEntriesByType('resource').map(({ name }) => name));
         assert.deepEqual(files.filter((name) => name.includes('/xr')), []);
-    } finally {
-        await close();
-    }
+    });
     const flat = await TinyPlant.create();
     writeFileSync(flat.file, readFileSync(flat.file, 'utf8').replace('name: Two boxes', 'name: Two boxes\n  reprojection: off'));
     try {

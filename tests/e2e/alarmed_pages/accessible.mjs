@@ -5,7 +5,7 @@ import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { test } from 'node:test';
 import { alarmed } from './alarmed.mjs';
-import { drawnAt, openPage, PHONE, shoot, TABLET, travel, waitForPicture } from '../support/browser.mjs';
+import { drawnAt, openPage, PHONE, shoot, TABLET, travel, waitForPicture, withPage } from '../support/browser.mjs';
 import { cutOff, everyPanel } from '../support/panels.mjs';
 import { setUp } from '../support/set_up.mjs';
 import { sweep, takes } from '../support/sweep.mjs';
@@ -176,8 +176,7 @@ for (const [row, theme] of Object.keys(THEMES).entries()) {
 const OPENED = [['e', '#alarms'], ['e', '#alarms', '#journal-tab'], ['v', '#views'], ['p', '#picture-panel'], ['y', '#timeline'],
     ['b', '#assets'], ['k', '#share'], ['?', '#help']];
 test('on a phone a screen reader announces every control, table and dialog by name; alarms are in a live region', options, async () => {
-    const other = await openPage(`${url}?lang=ko`, PHONE), { page: on } = other;
-    try {
+    await withPage(`${url}?lang=ko`, PHONE, async (on) => {
         await waitForPicture(on);
         await on.waitForFunction(() => globalThis.plantcast.session.recorded && document.querySelector('#alarm-counts .priority'));
         await becomes(() => unspoken(on), [], 'as it opens');
@@ -198,10 +197,7 @@ test('on a phone a screen reader announces every control, table and dialog by na
         const { nodes: [region] } = await client.send('Accessibility.getPartialAXTree', { nodeId, fetchRelatives: false });
         assert.deepEqual([region.ignored, region.role.value, region.properties.find(({ name }) => name === 'live').value.value],
             [false, 'status', 'polite']);
-        assert.deepEqual(other.errors, []);
-    } finally {
-        await other.close();
-    }
+    });
 });
 
 // Returns the focused element: its name, whether the focus is visible, and its position.

@@ -5,7 +5,7 @@ import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { before, test } from 'node:test';
 import { alarmed } from './alarmed.mjs';
-import { arrive, land, openPage, PHONE, resize, shoot, TABLET, waitForPicture } from '../support/browser.mjs';
+import { arrive, land, openPage, PHONE, resize, shoot, TABLET, waitForPicture, withPage } from '../support/browser.mjs';
 import { startAlarmed } from '../support/panels.mjs';
 import { sweep, takes } from '../support/sweep.mjs';
 import { notBuilt } from '../support/tiny_plant.mjs';
@@ -156,8 +156,7 @@ test('panels and the help page are complete on every screen', options, async (t)
         ['en', 'de', 'ko'].filter((_, i) => takes(row, i, 3)).map((language) => [...one, language]));
     for (const [name, screen, language] of ways)
         await t.test(`panels and help on ${name}, ${language}`, async () => {
-            const { page, close, errors } = await openPage(`${url}?lang=${language}`, screen);
-            try {
+            await withPage(`${url}?lang=${language}`, screen, async (page) => {
                 await waitForPicture(page);
                 for (const [key, opened] of [['v', '#views.open'], ['p', '#picture-panel.open'], ['?', '#help[open]']]) {
                     await page.locator('#viewport').focus();
@@ -175,10 +174,7 @@ test('panels and the help page are complete on every screen', options, async (t)
                     await becomes(() => panelsAmiss(page), [], id);
                     await page.locator(`#${id}-toggle`).click();
                 }
-                assert.deepEqual(errors, []);
-            } finally {
-                await close();
-            }
+            });
         });
 });
 
@@ -187,8 +183,7 @@ test('the banner about an old picture covers no legend', options, async () => {
     const wall = { viewport: sweep({ width: 3840, height: 2160 }, { width: 1920, height: 1080 }) };
     const more = { ...sweep({ 'large desk': { viewport: { width: 1440, height: 900 } } }, {}), wall };
     for (const [name, screen] of Object.entries({ ...more, ...most })) {
-        const { page, close } = await openPage(`${url}?lang=de${name === 'wall' ? '&wall' : ''}`, screen);
-        try {
+        await withPage(`${url}?lang=de${name === 'wall' ? '&wall' : ''}`, screen, async (page) => {
             await waitForPicture(page);
             await page.locator('.legend:visible').first().waitFor();
             await page.evaluate(() => {
@@ -205,15 +200,12 @@ test('the banner about an old picture covers no legend', options, async () => {
             if (name !== 'phone across')
                 await becomes(() => amiss(page), [], name);
             await shoot(page, `old-${name.replace(' ', '-')}`);
-        } finally {
-            await close();
-        }
+        });
     }
 });
 
 test('after a resize, the old picture stays undistorted and its marks stay in place until the new picture arrives', options, async () => {
-    const { page, close, errors } = await openPage(`${url}?lang=en`, SCREENS.desk);
-    try {
+    await withPage(`${url}?lang=en`, SCREENS.desk, async (page) => {
         await waitForPicture(page);
         await arrive(page);
         await page.waitForFunction(() => globalThis.plantcast.overlay.markers.length > 0);
@@ -243,10 +235,7 @@ test('after a resize, the old picture stays undistorted and its marks stay in pl
             assert.ok(count > 0 && off < 1.5, `${id}: marks up to ${off.toFixed(1)} px off`);
         }
         assert.ok(Math.abs(first.across - first.up) < 1e-3 && first.off < 1.5, JSON.stringify(first));
-        assert.deepEqual(errors, []);
-    } finally {
-        await close();
-    }
+    });
 });
 
 // With more quantities than fit, the row of their names can be dragged sideways; if a key or a server message selects one that
@@ -257,8 +246,7 @@ test('with seven quantities, the name of each is complete', options, async () =>
         `${names.map((name, i) => `  - { id: more${i}, quantity: ${name}, unit: bar, min: 0, max: 1 }\n`).join('')}sources:`)));
     try {
         for (const [name, screen] of [['phone', PHONE], ...sweep([['desk', SCREENS.desk], ['tablet', TABLET]], [])]) {
-            const { page, close } = await openPage(`${address}?lang=en`, screen);
-            try {
+            await withPage(`${address}?lang=en`, screen, async (page) => {
                 await waitForPicture(page);
                 await becomes(() => page.evaluate(() => [...document.querySelectorAll('#groups span')]
                     .filter((e) => e.scrollWidth > e.clientWidth + 1).map((e) => e.textContent)), [], name);
@@ -271,9 +259,7 @@ test('with seven quantities, the name of each is complete', options, async () =>
                 });
                 assert.ok(await page.evaluate(() => document.getElementById('plant-name').clientWidth > 60 &&
                     document.querySelector('.actions').getBoundingClientRect().right <= innerWidth), name);
-            } finally {
-                await close();
-            }
+            });
         }
     } finally {
         await many.destroy();

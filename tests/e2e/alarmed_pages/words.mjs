@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { before, test } from 'node:test';
 import { alarmed } from './alarmed.mjs';
-import { DESKTOP, openPage, PHONE, resize, settle, shoot, TABLET, waitForPicture } from '../support/browser.mjs';
+import { DESKTOP, openPage, PHONE, resize, settle, shoot, TABLET, waitForPicture, withPage } from '../support/browser.mjs';
 import { cutOff, everyPanel } from '../support/panels.mjs';
 import { sweep } from '../support/sweep.mjs';
 import { notBuilt } from '../support/tiny_plant.mjs';
@@ -44,7 +44,10 @@ const unsaid = (page) => page.evaluate(() => {
 });
 
 test('every text on the page comes from the word files, and no text key is shown', options, async () => {
-    const browser = await openPage(`${url}?lang=de`, { viewport: { width: 1440, height: 900 } }, null, async (page) => {
+    await withPage(`${url}?lang=de`, { viewport: { width: 1440, height: 900 } }, async (page) => {
+        await waitForPicture(page);
+        await everyPanel(page, (name) => becomes(() => unsaid(page), [], name));
+    }, null, async (page) => {
         await page.route(/\/words\/(lazy\.|alarms\.)?de\.js/, async (route) => {
             const text = await (await route.fetch()).text();
             const marked = text.replace(/^([\w. ]+(?:\(\w+\))?: )(.*(?:\n +.*)*)$/gm,
@@ -52,13 +55,6 @@ test('every text on the page comes from the word files, and no text key is shown
             await route.fulfill({ body: marked, contentType: 'text/javascript' });
         });
     });
-    try {
-        await waitForPicture(browser.page);
-        await everyPanel(browser.page, (name) => becomes(() => unsaid(browser.page), [], name));
-        assert.deepEqual(browser.errors, []);
-    } finally {
-        await browser.close();
-    }
 });
 
 const READERS = [['en', '.', /^\w{3} \d+, \d{4} /], ['ko', '.', /^\d{4}\. \d+\. \d+\. /], ['de', ',', /^\d\d\.\d\d\.\d{4} /]];
@@ -122,8 +118,7 @@ const showLater = (page) => page.evaluate(() => {
 
 test('titles and current values of the alarm list and the journal are complete, also with sort marks', options, async () => {
     for (const lang of ['en', 'ko', 'de']) {
-        const { page, close } = await openPage(`${url}?lang=${lang}`, { viewport: { width: 1920, height: 900 } });
-        try {
+        await withPage(`${url}?lang=${lang}`, { viewport: { width: 1920, height: 900 } }, async (page) => {
             await waitForPicture(page);
             await page.locator('#alarm-strip').click();
             for (const tab of ['alarms', 'journal']) {
@@ -171,9 +166,7 @@ test('titles and current values of the alarm list and the journal are complete, 
                 });
                 assert.ok(needed <= room, `${lang}, ${width}: a state of ${needed} pixels is cut at ${room}`);
             }
-        } finally {
-            await close();
-        }
+        });
     }
 });
 
@@ -211,8 +204,7 @@ test('on a phone held sideways, rows of alarms are low, and buttons are finger-s
 // A phone's keyboard covers up to half of the screen.
 test('on phones the dialogue to shelve an alarm is complete, finger-sized and above the keyboard', options, async () => {
     for (const lang of ['ko', 'de']) {
-        const { page, errors, close } = await openPage(`${url}?lang=${lang}`, PHONE);
-        try {
+        await withPage(`${url}?lang=${lang}`, PHONE, async (page) => {
             await waitForPicture(page);
             await page.locator('#alarm-strip').tap();
             for (const [width, height] of [[390, 844], [360, 640], [844, 390], [667, 375]]) {
@@ -234,9 +226,6 @@ test('on phones the dialogue to shelve an alarm is complete, finger-sized and ab
                 await shoot(page, `shelve-${lang}-${width}`);
                 await page.locator('#shelve-cancel').tap();
             }
-            assert.deepEqual(errors, []);
-        } finally {
-            await close();
-        }
+        });
     }
 });

@@ -8,7 +8,7 @@ import { join } from 'node:path';
 import { test } from 'node:test';
 import { folderOfTests } from '../support/folders.mjs';
 import { demo } from './demo.mjs';
-import { grab, openPage, readPng, settle, shoot, view, waitForPicture } from '../support/browser.mjs';
+import { grab, readPng, settle, shoot, view, waitForPicture, withPage } from '../support/browser.mjs';
 import { contrast, deltaE } from '../support/pixels.mjs';
 import { BIN, BUILD, missing } from '../support/plant.mjs';
 import { family, sharedMb } from '../support/processes.mjs';
@@ -26,15 +26,7 @@ setUp(why, async () => {
     plant = await demo();
 });
 
-async function withPage(codec, init, f) {
-    const browser = await openPage(`${plant.url}?codec=${codec}`, SCREEN, init);
-    try {
-        await f(browser.page);
-        assert.deepEqual(browser.errors, []);
-    } finally {
-        await browser.close();
-    }
-}
+const withCodec = (codec, init, f) => withPage(`${plant.url}?codec=${codec}`, SCREEN, f, init);
 
 // Draws the page's current view and readings with `plantcast snapshot`, as the reference. Returns the picture.
 async function snapshot(page) {
@@ -79,7 +71,7 @@ async function growth(page, count) {
     return [sharedMb(family(process.pid)) - before, (count * 4 * width * height) / 2 ** 20];
 }
 
-test('H.264 decoded by WebCodecs shows the same picture as the snapshot', options, (t) => withPage('h264', null, async (page) => {
+test('H.264 decoded by WebCodecs shows the same picture as the snapshot', options, (t) => withCodec('h264', null, async (page) => {
     await compare(t, page, 'h264');
     assert.deepEqual(await page.evaluate(() => globalThis.plantcast.decoding.codecs), ['auto', 'h264', 'jpeg', 'png']);
     // The page must not keep decoded pictures: in Chromium without a GPU, each open VideoFrame occupies shared memory.
@@ -88,11 +80,11 @@ test('H.264 decoded by WebCodecs shows the same picture as the snapshot', option
     assert.ok(grownMb < picturesMb / 2);
 }));
 
-test('without WebCodecs the page uses JPEG, and shows the same picture', options, (t) => withPage('auto', () => {
+test('without WebCodecs the page uses JPEG, and shows the same picture', options, (t) => withCodec('auto', () => {
     delete globalThis.VideoDecoder;
 }, (page) => compare(t, page, 'jpeg')));
 
-test('a decoder that passes the trial and fails later is replaced by JPEG for good', options, () => withPage('h264', () => {
+test('a decoder that passes the trial and fails later is replaced by JPEG for good', options, () => withCodec('h264', () => {
     const { decode } = VideoDecoder.prototype;
     let count = 0;
     VideoDecoder.prototype.decode = function decodeSome(chunk) {

@@ -3,9 +3,8 @@
 import assert from 'node:assert/strict';
 import { before, test } from 'node:test';
 import { demo } from './demo.mjs';
-import {
-    arrive, markers, openPage, PHONE, resize, settle, SHARP, shoot, TABLET, view, waitForHealth, waitForPicture,
-} from '../support/browser.mjs';
+import { arrive, markers, PHONE, resize, settle, SHARP, shoot, TABLET, view, waitForHealth, waitForPicture,
+    withPage } from '../support/browser.mjs';
 import { contrastRatio } from '../support/pixels.mjs';
 import { missing } from '../support/plant.mjs';
 import { sweep } from '../support/sweep.mjs';
@@ -21,20 +20,14 @@ before(async () => {
         plant = await demo();
 });
 
-async function withPage(screen, f) {
-    const browser = await openPage(plant.url, screen);
-    try {
-        await waitForPicture(browser.page);
-        await waitForHealth(browser.page, 'live');
-        // loads the camera controller now; by itself, the page loads it at the first input
-        await browser.page.evaluate(() => globalThis.plantcast.modules.get('cameraController'));
-        await arrive(browser.page);
-        await f(browser.page);
-        assert.deepEqual(browser.errors, []);
-    } finally {
-        await browser.close();
-    }
-}
+const onScreen = (screen, f) => withPage(plant.url, screen, async (page) => {
+    await waitForPicture(page);
+    await waitForHealth(page, 'live');
+    // loads the camera controller now; by itself, the page loads it at the first input
+    await page.evaluate(() => globalThis.plantcast.modules.get('cameraController'));
+    await arrive(page);
+    await f(page);
+});
 
 // Sends touch events as the hardware does; playwright itself can only tap.
 async function touches(page) {
@@ -76,7 +69,7 @@ const sticksOut = (page) => page.evaluate(() => [
     ...[...document.querySelectorAll('.segments span')].filter((e) => e.scrollWidth > e.clientWidth + 1),
 ].map((e) => e.id || e.className || e.textContent));
 
-test('tablet: one finger orbits, two fingers pan and zoom', options, () => withPage(TABLET, async (page) => {
+test('tablet: one finger orbits, two fingers pan and zoom', options, () => onScreen(TABLET, async (page) => {
     const box = await page.locator('#viewport').boundingBox();
     const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
     const hand = await touches(page);
@@ -120,7 +113,7 @@ test('tablet: one finger orbits, two fingers pan and zoom', options, () => withP
     }
 }));
 
-test('desktop: two parameter sets side by side, each with legend and markers', options, () => withPage(LARGE, async (page) => {
+test('desktop: two parameter sets side by side, each with legend and markers', options, () => onScreen(LARGE, async (page) => {
     const choose = (id, value) => page.locator(`#${id}`).selectOption(value);
     const whole = await page.evaluate(() => ['plant-name', 'health'].filter((id) => {
         const { scrollWidth, clientWidth } = document.getElementById(id);
@@ -206,7 +199,7 @@ test('desktop: two parameter sets side by side, each with legend and markers', o
 }));
 
 test('the right half\'s interpolation method is shown on every screen if it differs from the left half\'s',
-    options, () => withPage(LARGE, async (page) => {
+    options, () => onScreen(LARGE, async (page) => {
     const method = page.locator('#right-interpolation'), paper = { group: 'temperature', interpolation: 'paper' };
     for (const [width, height] of [[1280, 800], [1024, 768], [844, 390], [390, 844]]) {
         const name = `${width}x${height}`;
@@ -226,7 +219,7 @@ test('the right half\'s interpolation method is shown on every screen if it diff
     }
 }));
 
-test('an open panel covers neither legends nor the bar of a split view, and ends above the status bar', options, () => withPage(
+test('an open panel covers neither legends nor the bar of a split view, and ends above the status bar', options, () => onScreen(
     { viewport: { width: 1280, height: 800 } }, async (page) => {
         const parts = ['#legend', '#legend-right', '.panel.open, .display.open', '#status', '#split-bar'];
         const visibleBoxes = () => page.evaluate((all) => all.map((selector) => {
@@ -278,7 +271,7 @@ test('an open panel covers neither legends nor the bar of a split view, and ends
         await becomes(async () => Math.max(...await ground()) < 90, true, 'no bright strips at the sides of a picture');
     }));
 
-test('beside an open panel, the notice of hidden equipment and a card cover neither the legend nor each other', options, () => withPage(
+test('beside an open panel, the notice of hidden equipment and a card cover neither the legend nor each other', options, () => onScreen(
     { viewport: { width: 1280, height: 640 } }, async (page) => {
         const parts = ['#legend', '.chip:not(.outside)', ':is(.panel, .display).open', '.viewport > #card'];
         const boxes = () => page.evaluate((all) => all.map((selector) => {
@@ -314,7 +307,7 @@ test('beside an open panel, the notice of hidden equipment and a card cover neit
     }));
 
 test('tablet in portrait: the equipment list is folded, and nothing sticks out',
-    options, () => withPage({ ...TABLET, viewport: { width: 768, height: 1024 } }, async (page) => {
+    options, () => onScreen({ ...TABLET, viewport: { width: 768, height: 1024 } }, async (page) => {
     assert.equal(await page.locator('#assets').isVisible(), false, 'the list is folded');
     await becomes(() => sticksOut(page), []);
     await shoot(page, 'tablet-upright');
@@ -322,7 +315,7 @@ test('tablet in portrait: the equipment list is folded, and nothing sticks out',
 
 const SHARP_PHONE = { ...PHONE, ...SHARP };
 test('phone: sharp pixels, and a user chooses equipment from the list, flies there and taps a sensor',
-    options, () => withPage(SHARP_PHONE, async (page) => {
+    options, () => onScreen(SHARP_PHONE, async (page) => {
     const box = await page.locator('#viewport').boundingBox();
     await page.waitForFunction(([width, height]) => { // a preview has fewer pixels
         const canvas = document.getElementById('picture');
@@ -353,7 +346,7 @@ const SHEETS = { 'alarm-strip': '#alarms', 'views-toggle': '#views', 'picture-to
     'assets-toggle': '#assets' };
 const boxOf = (page, selector) => page.locator(selector).boundingBox();
 
-test('phones: panels are sheets of at most 40 % beside the picture, the legend is a strip', options, () => withPage(PHONE, async (page) => {
+test('phones: panels are sheets of at most 40 % beside the picture, the legend is a strip', options, () => onScreen(PHONE, async (page) => {
     for (const [width, height] of PHONES) {
         const upright = height > width, name = `${width}x${height}`;
         await resize(page, { width, height });
@@ -410,7 +403,7 @@ const ask = (page, name) => page.evaluate((f) => {
     plantcast[f](model.tags.find(({ group, position }) => group && position));
 }, name);
 
-test('phones: the button of a list that a card or a trend covers shows the list again', options, () => withPage(PHONE, async (page) => {
+test('phones: the button of a list that a card or a trend covers shows the list again', options, () => onScreen(PHONE, async (page) => {
     for (const [width, height] of PHONES) {
         await page.setViewportSize({ width, height });
         for (const [button, list] of [['#alarm-strip', '#alarms'], ['#assets-toggle', '#assets']])
@@ -430,7 +423,7 @@ test('phones: the button of a list that a card or a trend covers shows the list 
 }));
 
 test('phones: sheets, time bar and trends leave room for the picture; the sheet\'s grip has two heights',
-    options, () => withPage(PHONE, async (page) => {
+    options, () => onScreen(PHONE, async (page) => {
     await page.waitForFunction(() => globalThis.plantcast.session.recorded);
     for (const [width, height] of PHONES.filter(([w, h]) => h > w)) {
         const name = `${width}x${height}`, low = height < 700;
@@ -480,7 +473,7 @@ test('phones: sheets, time bar and trends leave room for the picture; the sheet\
     }
 }));
 
-test('phones: a trend\'s chart is readable, its table fits, and the picture stays visible', options, () => withPage(PHONE, async (page) => {
+test('phones: a trend\'s chart is readable, its table fits, and the picture stays visible', options, () => onScreen(PHONE, async (page) => {
     await page.waitForFunction(() => globalThis.plantcast.session.recorded);
     await page.evaluate(() => {
         const { addTrend, session: { model }, showTrend } = globalThis.plantcast;
@@ -512,7 +505,7 @@ test('phones: a trend\'s chart is readable, its table fits, and the picture stay
     }
 }));
 
-test('phones: charts that would be too low are shown one at a time, with a switch', options, () => withPage(PHONE, async (page) => {
+test('phones: charts that would be too low are shown one at a time, with a switch', options, () => onScreen(PHONE, async (page) => {
     await page.waitForFunction(() => globalThis.plantcast.session.recorded);
     await page.evaluate(() => {
         const { addTrend, session: { model }, showTrend } = globalThis.plantcast;
@@ -557,7 +550,7 @@ test('phones: charts that would be too low are shown one at a time, with a switc
     }
 }));
 
-test('desktop: a trend takes eight tags and refuses a ninth, and all its charts share the crosshair', options, () => withPage(LARGE,
+test('desktop: a trend takes eight tags and refuses a ninth, and all its charts share the crosshair', options, () => onScreen(LARGE,
     async (page) => {
         await page.waitForFunction(() => globalThis.plantcast.session.recorded);
         const ninth = await page.evaluate(() => {
@@ -593,7 +586,7 @@ test('desktop: a trend takes eight tags and refuses a ninth, and all its charts 
         await page.locator('#trend-close').click();
     }));
 
-test('phone: two fingers pinch, twist and pan', options, () => withPage(PHONE, async (page) => {
+test('phone: two fingers pinch, twist and pan', options, () => onScreen(PHONE, async (page) => {
     const box = await boxOf(page, '#viewport'), [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
     const hand = await touches(page), azimuth = ({ camera: { eye, target } }) => Math.atan2(eye[1] - target[1], eye[0] - target[0]);
     const start = await view(page);
@@ -614,7 +607,7 @@ test('phone: two fingers pinch, twist and pan', options, () => withPage(PHONE, a
 // one
 const HELD = [[390, 844], [844, 390], [360, 740], [280, 653]];
 
-test('phones: names and states are readable and complete, and controls are finger-sized', options, () => withPage(PHONE, async (page) => {
+test('phones: names and states are readable and complete, and controls are finger-sized', options, () => onScreen(PHONE, async (page) => {
     const rgb = (text) => text.match(/[\d.]+/g).slice(0, 3).map(Number);
     for (const [width, height] of HELD) {
         const name = `${width}x${height}`;
@@ -672,7 +665,7 @@ test('phones: names and states are readable and complete, and controls are finge
     await becomes(() => tooSmall(page), [], 'trend');
 }));
 
-test('in a low window of a desk, no part of the page lies over another', options, () => withPage(
+test('in a low window of a desk, no part of the page lies over another', options, () => onScreen(
     { viewport: { width: 1280, height: 420 } }, async (page) => {
         const meet = (one, other) => page.evaluate((both) => {
             const [a, b] = both.map((name) => document.querySelector(name).getBoundingClientRect());
@@ -693,7 +686,7 @@ test('in a low window of a desk, no part of the page lies over another', options
         await hidden(page, '.timeline .line');
     }));
 
-test('on a tablet, the buttons of a sensor\'s card are complete', options, () => withPage(
+test('on a tablet, the buttons of a sensor\'s card are complete', options, () => onScreen(
     { ...TABLET, viewport: { width: 768, height: 1024 } }, async (page) => {
         await ask(page, 'selectTag');
         await page.locator('#card .trends-of button').first().waitFor();
@@ -703,7 +696,7 @@ test('on a tablet, the buttons of a sensor\'s card are complete', options, () =>
         }, true);
     }));
 
-test('at 200 % zoom the engineering panel is as high as the picture, and both fill the stage', options, () => withPage(
+test('at 200 % zoom the engineering panel is as high as the picture, and both fill the stage', options, () => onScreen(
     { viewport: { width: 640, height: 400 } }, async (page) => {
         await page.locator('#engineer-toggle').click();
         await page.locator('#engineer').waitFor();
@@ -712,7 +705,7 @@ test('at 200 % zoom the engineering panel is as high as the picture, and both fi
         assert.deepEqual(heights, Array(3).fill(heights[0]));
     }));
 
-test('on half-width legends of a phone, limit names do not overlap, and colour bar and numbers are complete', options, () => withPage(
+test('on half-width legends of a phone, limit names do not overlap, and colour bar and numbers are complete', options, () => onScreen(
     { ...PHONE, viewport: { width: 360, height: 640 } }, async (page) => {
         await page.locator('#viewport').focus();
         await page.keyboard.press('j');

@@ -8,7 +8,7 @@ import { createServer as createSecureServer } from 'node:https';
 import { connect } from 'node:net';
 import { join } from 'node:path';
 import { test } from 'node:test';
-import { DESKTOP, openPage, PHONE, shoot, waitForPicture } from '../support/browser.mjs';
+import { DESKTOP, openPage, PHONE, shoot, waitForPicture, withPage } from '../support/browser.mjs';
 import { freePort } from '../support/ports.mjs';
 import { makeCertificate } from '../support/receivers.mjs';
 import { setUp } from '../support/set_up.mjs';
@@ -56,16 +56,13 @@ test('a page behind nginx without WebSocket lines names nginx and the lines; wit
             ['wall', '?wall', DESKTOP, /nginx does not pass/],
             ['pane', '?wall=55,3&pane=views&hangs=x', DESKTOP, /nginx does not pass/],
             ['korean', '?lang=ko', DESKTOP, /WebSocket을 전달하지 않습니다/]]) {
-            const { page, close } = await openPage(`${url}${query}`, screen);
-            try {
+            await withPage(`${url}${query}`, screen, async (page) => {
                 await shown(page, words);
                 await shown(page, LINES);
                 await shoot(page, `proxy-${name}`);
                 assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth),
                     `${name}: nothing extends beyond the page`);
-            } finally {
-                await close();
-            }
+            });
         }
         await plant.daemon.line(/stream: a request from 127\.0\.0\.1 came without Upgrade: websocket, although it is a WebSocket/);
         const minutes = Math.floor((performance.now() - began) / 60000);

@@ -7,7 +7,7 @@ import { createHash, X509Certificate } from 'node:crypto';
 import { appendFileSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
-import { openPage, settle, shoot, TABLET, waitForHealth, waitForPicture } from '../support/browser.mjs';
+import { settle, shoot, TABLET, waitForHealth, waitForPicture, withPage } from '../support/browser.mjs';
 import { Relay, relayMissing } from '../support/relay.mjs';
 import { setUp } from '../support/set_up.mjs';
 import { sweep } from '../support/sweep.mjs';
@@ -30,16 +30,10 @@ setUp(options.skip, async (own) => {
     url = `http://127.0.0.1:${plant.port}/`;
 });
 
-async function withPage(address, screen, f, init = null) {
-    const browser = await openPage(address, screen, init);
-    try {
-        await waitForPicture(browser.page);
-        await f(browser.page, browser);
-        assert.deepEqual(browser.errors, []);
-    } finally {
-        await browser.close();
-    }
-}
+const withPicture = (address, screen, f, init = null) => withPage(address, screen, async (page, browser) => {
+    await waitForPicture(page);
+    await f(page, browser);
+}, init);
 
 // Returns the sizes of all texts, in CSS pixels.
 const letters = (page) => page.evaluate(() => {
@@ -64,7 +58,7 @@ function letterMinutes(px, { inches, metres }, screen) {
 }
 
 test(`on a wall of ${SIZE.width} pixels, all text is legible from 3 m, alarms are counted, and there are no buttons`, options, () =>
-    withPage(`${url}?wall&theme=dark`, WALL, async (page) => {
+    withPicture(`${url}?wall&theme=dark`, WALL, async (page) => {
         await waitForHealth(page, 'live');
         await page.waitForFunction(() => document.querySelector('#alarm-counts .priority'));
         await settle(page);
@@ -86,7 +80,7 @@ test(`on a wall of ${SIZE.width} pixels, all text is legible from 3 m, alarms ar
     }));
 
 test('simulated values are marked on the picture itself and by a frame', options, () =>
-    withPage(url, TABLET, async (page) => {
+    withPicture(url, TABLET, async (page) => {
         await waitForHealth(page, 'live');
         await page.evaluate(() => {
             const { session } = globalThis.plantcast;
@@ -100,7 +94,7 @@ test('simulated values are marked on the picture itself and by a frame', options
     }));
 
 test('a tablet that slept marks its picture as old until the server responds', options, () =>
-    withPage(url, TABLET, async (page) => {
+    withPicture(url, TABLET, async (page) => {
         await waitForHealth(page, 'live');
         await settle(page);
         await page.evaluate(() => {
@@ -122,7 +116,7 @@ test('a tablet that slept marks its picture as old until the server responds', o
     }));
 
 test('a tablet with a wrong date still shows correct ages and the plant\'s time', options, () =>
-    withPage(url, TABLET, async (page) => {
+    withPicture(url, TABLET, async (page) => {
         await waitForHealth(page, 'live');
         const far = () => page.evaluate(() => Date.now() - globalThis.plantcast.session.clockUs() / 1000);
         assert.ok(await far() < -3 * 86400e3 + 60000, 'the tablet\'s date is wrong');
@@ -171,7 +165,7 @@ const samples = (page) => page.evaluate(() => {
 
 test('a slow link that stalls: the last picture stays, marked as old, and the view is unchanged', options, async () => {
     const relay = await Relay.open(plant.port, { bytesPerS: 250000, delayMs: 60 });
-    await withPage(`http://127.0.0.1:${relay.port}/`, TABLET, async (page) => {
+    await withPicture(`http://127.0.0.1:${relay.port}/`, TABLET, async (page) => {
         await waitForHealth(page, 'live');
         await page.evaluate(() => {
             const { session } = globalThis.plantcast;
@@ -206,7 +200,7 @@ test('a slow link that stalls: the last picture stays, marked as old, and the vi
 test('a link that stalls while the hand moves: the warped picture is marked as old, and the status bar tells how far it lags behind',
     options, async () => {
     const relay = await Relay.open(plant.port, { bytesPerS: 4e6, delayMs: 60 });
-    await withPage(`http://127.0.0.1:${relay.port}/?lang=en`, { viewport: { width: 1024, height: 768 } }, async (page) => {
+    await withPicture(`http://127.0.0.1:${relay.port}/?lang=en`, { viewport: { width: 1024, height: 768 } }, async (page) => {
         await waitForHealth(page, 'live');
         await settle(page);
         const box = await page.locator('#viewport').boundingBox(), [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
@@ -244,7 +238,7 @@ test('a link that stalls while the hand moves: the warped picture is marked as o
 
 test('legend and markers belong to the shown picture, however late the requested one arrives', options, async () => {
     const relay = await Relay.open(plant.port, { bytesPerS: 1e8, delayMs: 0 });
-    await withPage(`http://127.0.0.1:${relay.port}/`, TABLET, async (page) => {
+    await withPicture(`http://127.0.0.1:${relay.port}/`, TABLET, async (page) => {
         await waitForHealth(page, 'live');
         // moves the camera away from its home position: in a split picture the page would fit the home position to the shape of
         // the halves
@@ -281,7 +275,7 @@ test('legend and markers belong to the shown picture, however late the requested
 
 test('a cached page of another version reloads itself, once', options, async () => {
     const asked = [];
-    await withPage(url, TABLET, async (page, browser) => {
+    await withPicture(url, TABLET, async (page, browser) => {
         await page.goto('about:blank'); // leaves the page, so that its late requests for modules do not count
         browser.page.on('domcontentloaded', () => asked.push('loaded'));
         let first = true;
@@ -301,7 +295,7 @@ test('a cached page of another version reloads itself, once', options, async () 
 });
 
 test('the page can be installed: a manifest with all its icons; no service worker on plain http', options, () =>
-    withPage(url, TABLET, async (page) => {
+    withPicture(url, TABLET, async (page) => {
         const manifest = await (await fetch(new URL(await page.locator('link[rel=manifest]').getAttribute('href'), url))).json();
         assert.deepEqual([manifest.display, manifest.start_url], ['standalone', './']);
         for (const { src, sizes, type } of manifest.icons) {
@@ -334,7 +328,7 @@ test('installed over https, the page opens without its server, says so, and is l
     context.after(() => secure.destroy());
     await secure.start(...by.daemon);
     const { port } = secure, address = `https://127.0.0.1:${port}/`;
-    await withPage(address, { ...TABLET, args: by.browser, profile: true }, async (page) => {
+    await withPicture(address, { ...TABLET, args: by.browser, profile: true }, async (page) => {
         await page.evaluate(() => navigator.serviceWorker.ready);
         const client = await page.context().newCDPSession(page);
         assert.deepEqual((await client.send('Page.getInstallabilityErrors')).installabilityErrors, []);

@@ -4,7 +4,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
-import { land, openPage, PHONE, shoot, waitForHealth, waitForPicture } from '../support/browser.mjs';
+import { land, openPage, PHONE, shoot, waitForHealth, waitForPicture, withPage } from '../support/browser.mjs';
 import { startAlarmed } from '../support/panels.mjs';
 import { promise } from '../support/promise.mjs';
 import { sweep } from '../support/sweep.mjs';
@@ -89,17 +89,11 @@ for (const [name, language, screen] of PAGES) {
 }
 
 const DESK = { viewport: { width: 1024, height: 640 } };
-async function withPage(f, arrange) {
-    const browser = await openPage(`${url}?lang=en`, DESK, null, arrange);
-    try {
-        await waitForPicture(browser.page);
-        await waitForHealth(browser.page, 'live');
-        await f(browser.page);
-        assert.deepEqual(browser.errors, []);
-    } finally {
-        await browser.close();
-    }
-}
+const onDesk = (f, arrange) => withPage(`${url}?lang=en`, DESK, async (page) => {
+    await waitForPicture(page);
+    await waitForHealth(page, 'live');
+    await f(page);
+}, null, arrange);
 const press = async (page, key) => {
     await page.locator('#viewport').focus();
     await page.keyboard.press(key);
@@ -114,7 +108,7 @@ test('a part of the page that cannot be loaded says so, and opens by itself once
     const words = [['v', 'words/lazy.en.js', '#views.open']]; // the file that contains the texts of all lazily loaded parts
     const away = (page, file) => page.route(`**/${file}*`, (route) => route.abort());
     for (const all of [parts, words])
-        await withPage(async (page) => {
+        await onDesk(async (page) => {
             await page.waitForFunction(() => globalThis.plantcast.session.recorded);
             for (const [key, file, opened] of all) {
                 await page.evaluate(() => { document.getElementById('toast').hidden = true; }); // hides the previous part's message
@@ -133,7 +127,7 @@ test('a part of the page that cannot be loaded says so, and opens by itself once
 
 test('no part of the page shows text before its texts are loaded', options, () => {
     const warnings = [];
-    return withPage(async (page) => {
+    return onDesk(async (page) => {
         page.on('console', (message) => warnings.push(message.text()));
         await page.evaluate((names) => Promise.all(names.map((name) => globalThis.plantcast.modules.prepare(name))), PARTS);
         assert.deepEqual(warnings.filter((text) => text.includes('no words')), []);
@@ -143,7 +137,7 @@ test('no part of the page shows text before its texts are loaded', options, () =
     }));
 });
 
-test('a panel that the user gave up waiting for does not open when it arrives late', options, () => withPage(async (page) => {
+test('a panel that the user gave up waiting for does not open when it arrives late', options, () => onDesk(async (page) => {
     await page.route('**/app/views/views.js*', (route) => route.abort());
     await press(page, 'v');
     await isSaid(page);
@@ -155,7 +149,7 @@ test('a panel that the user gave up waiting for does not open when it arrives la
     await page.locator('#views.open').waitFor();
 }));
 
-test('a part requested while the server is away loads by itself when the server returns', options, () => withPage(async (page) => {
+test('a part requested while the server is away loads by itself when the server returns', options, () => onDesk(async (page) => {
     await plant.daemon.stop('SIGKILL');
     await waitForHealth(page, 'lost');
     await page.locator('#alarm-strip').click();
@@ -188,7 +182,7 @@ test('the first input by mouse, keys or buttons moves the camera, though the cam
         async (page) => page.locator('#assets-list .asset').first().click(),
     ];
     for (const act of firsts)
-        await withPage(async (page) => {
+        await onDesk(async (page) => {
             assert.equal(await isCameraControllerThere(page), false, 'the camera controller is not loaded before it is needed');
             await page.evaluate((camera) => globalThis.plantcast.session.setCamera(camera), ELSEWHERE);
             const began = performance.now();
@@ -205,7 +199,7 @@ test('the first input by mouse, keys or buttons moves the camera, though the cam
 });
 
 test('a drag that began before the camera controller was loaded is followed, however long loading takes',
-    options, () => withPage(async (page) => {
+    options, () => onDesk(async (page) => {
     await page.evaluate((camera) => globalThis.plantcast.session.setCamera(camera), ELSEWHERE);
     const { x, y, width, height } = await page.locator('#viewport').boundingBox(), [left, top] = [x + width / 2, y + height / 2];
     await page.mouse.move(left, top);
@@ -219,7 +213,7 @@ test('a drag that began before the camera controller was loaded is followed, how
     await page.mouse.up();
 }, (page) => page.route('**/app/input/camera_controller.js*', (route) => route.abort())));
 
-test('the page names the marker under the pointer, even if the pointer has not moved since', options, () => withPage(async (page) => {
+test('the page names the marker under the pointer, even if the pointer has not moved since', options, () => onDesk(async (page) => {
     await page.waitForFunction(() => globalThis.plantcast.overlay.markers.some(({ occluded }) => !occluded));
     await land(page); // waits until the camera stands still, and with it the marker over which the pointer is placed
     const marker = await page.evaluate(() => {
@@ -235,7 +229,7 @@ test('the page names the marker under the pointer, even if the pointer has not m
 })));
 
 test('input that the page cannot follow yet gets a message, and is followed once the controller is loaded',
-    options, () => withPage(async (page) => {
+    options, () => onDesk(async (page) => {
     const before = await eye(page);
     await drag(page);
     await isSaid(page);
@@ -249,7 +243,7 @@ test('input that the page cannot follow yet gets a message, and is followed once
 test('a page whose server changed version meanwhile reloads itself instead of mixing both versions', options, () => {
     let version = 'aaaaaaaaaaaa';
     const serve = (route) => route.fulfill({ contentType: 'text/javascript', body: `export const version = '${version}';\n` });
-    return withPage(async (page) => {
+    return onDesk(async (page) => {
         await page.evaluate(() => globalThis.plantcast.session.setParams({ distance: 'euclidean' }));
         await page.waitForFunction(() => location.hash.includes('distance=euclidean'));
         await page.evaluate(() => { globalThis.isBefore = true; });

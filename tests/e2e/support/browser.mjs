@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Debian's chromium, driven by playwright-core, and functions that read the page's state.
+import assert from 'node:assert/strict';
 import { existsSync, mkdirSync, mkdtempSync, readdirSync, rmSync, statSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { tmpdir } from 'node:os';
@@ -170,6 +171,17 @@ export async function openPage(url, screen = DESKTOP, before = null, arrange = n
     await page.goto(url);
     const close = () => open.delete(page) && (isPlain ? leave(page, kind).catch(() => context.close()) : context.close());
     return { page, errors, close };
+}
+
+// Opens a page as openPage() does, calls use(page, what openPage() returns), and closes the page. Fails if the page had an error.
+export async function withPage(url, screen, use, ...more) {
+    const opened = await openPage(url, screen, ...more);
+    try {
+        await use(opened.page, opened);
+        assert.deepEqual(opened.errors, []);
+    } finally {
+        await opened.close();
+    }
 }
 
 // Resizes the window, and waits for the style sheets of narrow screens and phones, which the page loads when it first needs

@@ -3,7 +3,7 @@
 // the screen shows its point, not where the page's newest camera would show it.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { openPage, settle, shoot, TABLET, waitForPicture } from '../support/browser.mjs';
+import { openPage, settle, shoot, TABLET, waitForPicture, withPage } from '../support/browser.mjs';
 import { promise } from '../support/promise.mjs';
 import { Relay, relayMissing } from '../support/relay.mjs';
 import { setUp } from '../support/set_up.mjs';
@@ -144,8 +144,7 @@ const middle = async (page) => {
 const withoutWarp = () => { delete globalThis.WebGL2RenderingContext; };
 
 test('markers and labels stay in step while the mouse turns, moves and zooms the picture', options, async (t) => {
-    const { page, errors, close } = await openPage(url('h264'), { viewport: { width: 1100, height: 700 } }, withoutWarp);
-    try {
+    await withPage(url('h264'), { viewport: { width: 1100, height: 700 } }, async (page) => {
         await look(page);
         const [x, y] = await middle(page);
         await page.mouse.move(x, y);
@@ -159,15 +158,11 @@ test('markers and labels stay in step while the mouse turns, moves and zooms the
         }
         await judge(page, t);
         await shoot(page, 'step');
-        assert.deepEqual(errors, []);
-    } finally {
-        await close();
-    }
+    }, withoutWarp);
 });
 
 sweep(test, () => {})('markers and labels stay in step with fingers, on a tablet in portrait', options, async (t) => {
-    const { page, errors, close } = await openPage(url('jpeg'), { ...TABLET, viewport: { width: 768, height: 1024 } }, withoutWarp);
-    try {
+    await withPage(url('jpeg'), { ...TABLET, viewport: { width: 768, height: 1024 } }, async (page) => {
         await look(page);
         const [x, y] = await middle(page), client = await page.context().newCDPSession(page);
         const touch = (type, ...touchPoints) => client.send('Input.dispatchTouchEvent', { type, touchPoints });
@@ -176,10 +171,7 @@ sweep(test, () => {})('markers and labels stay in step with fingers, on a tablet
         await touch('touchEnd');
         await judge(page, t);
         await shoot(page, 'step-tablet');
-        assert.deepEqual(errors, []);
-    } finally {
-        await close();
-    }
+    }, withoutWarp);
 });
 
 // Records every picture that the page has warped to its own camera: how many animation frames after that camera was set it was
