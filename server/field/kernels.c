@@ -246,44 +246,36 @@ KERNEL float kernel_store(const float *restrict value, size_t count, struct scal
     return change_of(most, changed);
 }
 
-struct few {
-    struct kernel_value rule;
-    const float *column[KERNEL_COLUMNS - 1];
-    double factor[KERNEL_COLUMNS - 1];
-};
-
 /* Does the work of kernel_few() for one block of vertices. column_count is a constant after inlining, so that the compiler
    unrolls the loops. */
-SIMD_BODY int32_t put_few(const struct few *few, size_t column_count, const float *restrict weight, size_t count,
-                          struct scalar *restrict at)
+SIMD_BODY int32_t put_few(const struct kernel_value *rule, const struct kernel_columns *columns, size_t column_count,
+                          const float *restrict weight, size_t count, struct scalar *restrict at)
 {
-    const struct few own = *few;
+    const struct kernel_value own_rule = *rule;
+    const struct kernel_columns own = *columns;
     int32_t most = 0;
     for (size_t j = 0; j < count; j++) {
         double sum = 0;
         for (size_t k = 0; k < column_count; k++)
             sum += (double)own.column[k][j] * own.factor[k];
-        int32_t change = put(&at[j], value_of(&own.rule, sum, weight[j]));
+        int32_t change = put(&at[j], value_of(&own_rule, sum, weight[j]));
         most = change > most ? change : most;
     }
     return most;
 }
 
-KERNEL float kernel_few(const struct kernel_value *rule, const float *const *columns, const double *factors, size_t column_count,
-                        const float *restrict weight, size_t count, struct scalar *restrict at, bool *changed)
+KERNEL float kernel_few(const struct kernel_value *rule, const struct kernel_columns *columns, const float *restrict weight, size_t count,
+                        struct scalar *restrict at, bool *changed)
 {
-    struct few few = { .rule = *rule };
     int32_t most = 0;
-    memcpy(few.column, columns, column_count * sizeof(*columns));
-    memcpy(few.factor, factors, column_count * sizeof(*factors));
-    switch (column_count) {
-    case 1: most = put_few(&few, 1, weight, count, at); break;
-    case 2: most = put_few(&few, 2, weight, count, at); break;
-    case 3: most = put_few(&few, 3, weight, count, at); break;
-    case 4: most = put_few(&few, 4, weight, count, at); break;
-    case 5: most = put_few(&few, 5, weight, count, at); break;
-    case 6: most = put_few(&few, 6, weight, count, at); break;
-    case 7: most = put_few(&few, 7, weight, count, at); break;
+    switch (columns->count) {
+    case 1: most = put_few(rule, columns, 1, weight, count, at); break;
+    case 2: most = put_few(rule, columns, 2, weight, count, at); break;
+    case 3: most = put_few(rule, columns, 3, weight, count, at); break;
+    case 4: most = put_few(rule, columns, 4, weight, count, at); break;
+    case 5: most = put_few(rule, columns, 5, weight, count, at); break;
+    case 6: most = put_few(rule, columns, 6, weight, count, at); break;
+    case 7: most = put_few(rule, columns, 7, weight, count, at); break;
     default: assert(!"few columns");
     }
     return change_of(most, changed);

@@ -82,9 +82,15 @@ void kernel_value(const struct kernel_value *rule, const double *restrict sum, c
 /* Stores the values of vertices in their scalars. Returns the largest change of a value, and sets *changed if any value
    differs. */
 float kernel_store(const float *restrict value, size_t count, struct scalar *restrict at, bool *changed);
+/* Columns of fewer than KERNEL_COLUMNS sensors, each with the factor of its sensor. */
+struct kernel_columns {
+    const float *column[KERNEL_COLUMNS - 1];
+    double factor[KERNEL_COLUMNS - 1];
+    size_t count;
+};
 /* Equivalent to kernel_add() on a sum of zeros, kernel_value() and kernel_store(), in one pass and with identical bits, for
    fewer than KERNEL_COLUMNS sensors. Returns the largest change, and sets *changed if any value differs. */
-float kernel_few(const struct kernel_value *rule, const float *const *columns, const double *factors, size_t column_count,
-                 const float *restrict weight, size_t count, struct scalar *restrict at, bool *changed);
+float kernel_few(const struct kernel_value *rule, const struct kernel_columns *columns, const float *restrict weight, size_t count,
+                 struct scalar *restrict at, bool *changed);
 
 #endif

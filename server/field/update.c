@@ -310,11 +310,12 @@ static bool is_simple(const struct update *update, size_t block, size_t begin)
 static float sum_few(const struct update *update, size_t begin, size_t count, bool *changed)
 {
     const struct weights *weights = update->state->weights;
-    const float *columns[KERNEL_COLUMNS];
-    for (size_t k = 0; k < update->all.count; k++)
-        columns[k] = weights_column(weights, begin, update->all.members[k]);
-    return kernel_few(&update->rule, columns, update->all.factors, update->all.count, weights->total + begin, count,
-                      update->state->at + begin, changed);
+    struct kernel_columns columns = { .count = update->all.count };
+    for (size_t k = 0; k < columns.count; k++) {
+        columns.column[k] = weights_column(weights, begin, update->all.members[k]);
+        columns.factor[k] = update->all.factors[k];
+    }
+    return kernel_few(&update->rule, &columns, weights->total + begin, count, update->state->at + begin, changed);
 }
 
 static void update_blocks(void *arg, size_t begin, size_t end)

@@ -189,24 +189,24 @@ static int join_month(struct month_file *file, const char *tag, const struct his
 
 static int add_month(struct month_file *file, const char *tag, int level, int64_t from_us, int64_t to_us, struct gather *gather)
 {
-    struct history_buckets buckets = { 0 };
+    struct month_buckets month = { .step = gather->out->step };
     struct history_points points = { 0 };
-    int64_t until_us = from_us;
     bool joined = false;
-    int error = month_file_buckets(file, tag, (enum history_level)level, from_us, to_us, &buckets, &until_us, &gather->out->step);
-    if (!error && buckets.count) {
-        error = join_month(file, tag, buckets.at, gather, &joined);
+    int error = month_file_buckets(file, tag, (enum history_level)level, from_us, to_us, &month);
+    gather->out->step = month.step;
+    if (!error && month.buckets.count) {
+        error = join_month(file, tag, month.buckets.at, gather, &joined);
         gather->rollup = (struct rollup){ 0 };
-        gather->done_us = until_us;
+        gather->done_us = month.until_us;
     }
-    if (!error && until_us <= to_us)
-        error = month_file_points(file, tag, until_us - 1, to_us, &points);
-    for (size_t i = joined; i < buckets.count && !error; i++)
-        put_bucket(gather, &buckets.at[i]);
+    if (!error && month.until_us <= to_us)
+        error = month_file_points(file, tag, month.until_us - 1, to_us, &points);
+    for (size_t i = joined; i < month.buckets.count && !error; i++)
+        put_bucket(gather, &month.buckets.at[i]);
     gather->out->step |= points.step;
     if (!error)
         put_points(gather, &points);
-    mem_free(buckets.at);
+    mem_free(month.buckets.at);
     mem_free(points.at);
     return error;
 }

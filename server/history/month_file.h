@@ -121,10 +121,15 @@ struct history_left_out {
 };
 /* Counts a tag's points between two times that are omitted because of their unit, and adds them to *out. */
 int month_file_left_out(struct month_file *file, const char *tag, int64_t from_us, int64_t to_us, struct history_left_out *out);
-/* Appends a tag's rollup buckets that begin in from_us..to_us, and the last bucket that begins before. *until_us receives the
-   end of the last bucket in the file; *step: true if the tag is a switch (unchanged if the file does not have the tag). */
+/* A tag's rollup buckets in a month's file; zero-initialise. */
+struct month_buckets {
+    struct history_buckets buckets;
+    int64_t until_us; /* end of the last bucket in the file; from_us if it has none */
+    bool step;        /* true if the tag is a switch; unchanged if the file does not have the tag */
+};
+/* Appends a tag's rollup buckets that begin in from_us..to_us, and the last bucket that begins before. */
 int month_file_buckets(struct month_file *file, const char *tag, enum history_level level, int64_t from_us, int64_t to_us,
-                       struct history_buckets *out, int64_t *until_us, bool *step);
+                       struct month_buckets *out);
 /* A time span in which nothing was recorded: the daemon did not run, or the clock was set forward. */
 struct history_gap {
     int64_t from_us, to_us;

@@ -209,11 +209,12 @@ int month_file_left_out(struct month_file *file, const char *tag, int64_t from_u
 }
 
 int month_file_buckets(struct month_file *file, const char *tag, enum history_level level, int64_t from_us, int64_t to_us,
-                       struct history_buckets *out, int64_t *until_us, bool *step)
+                       struct month_buckets *out)
 {
+    struct history_buckets *buckets = &out->buckets;
     struct unit_change change;
-    int64_t id = month_find_tag(file, tag, unit_shown(file, tag), step, &change), length_us = history_level_us[level];
-    *until_us = from_us;
+    int64_t id = month_find_tag(file, tag, unit_shown(file, tag), &out->step, &change), length_us = history_level_us[level];
+    out->until_us = from_us;
     if (!id)
         return 0;
     sqlite3_stmt *rollups = month_sql(file, SQL_ROLLUPS);
@@ -234,9 +235,9 @@ int month_file_buckets(struct month_file *file, const char *tag, enum history_le
             .bad_us = sqlite3_column_int64(rollups, 7),
             .quality = (uint32_t)sqlite3_column_int64(rollups, 8),
         };
-        mem_grow(&out->at, &out->capacity, out->count + 1, sizeof(*out->at));
-        out->at[out->count++] = bucket;
-        *until_us = bucket.t_us + length_us;
+        mem_grow(&buckets->at, &buckets->capacity, buckets->count + 1, sizeof(*buckets->at));
+        buckets->at[buckets->count++] = bucket;
+        out->until_us = bucket.t_us + length_us;
     }
     sqlite3_reset(rollups);
     return database_fail(&file->db, code, "cannot be read");

@@ -103,17 +103,21 @@ SOFT_INLINE bool rule(float y, float pattern_px)
     return phase < (float)-RULE_EDGE || phase > (float)RULE_EDGE;
 }
 
-/* Replaces the marks (colour codes) of those among eight pixels that show a pattern: no data, uncertain or no limits. Called for
-   faces whose corners have different flags, or a flag that shows a pattern. */
-SOFT_INLINE lanes_int pattern_marks(lanes_int marks, lanes_int no_data, lanes_int uncertain, lanes_int no_limits, lanes row, lanes x,
-                                    float y, const struct mark_ink *ink)
+struct eight_patterns { /* masks: those of eight pixels that show each pattern */
+    lanes_int no_data, uncertain, no_limits;
+};
+
+/* Replaces the marks (colour codes) of those among eight pixels that show a pattern. Called for faces whose corners have
+   different flags, or a flag that shows a pattern. */
+SOFT_INLINE lanes_int pattern_marks(lanes_int marks, const struct eight_patterns *patterns, lanes row, lanes x, float y,
+                                    const struct mark_ink *ink)
 {
     lanes_int r = whole_within(row, ink->last_row) * COLORMAP_COLUMNS + (int32_t)MARK_FIELD + COLORMAP_PATTERNS;
     lanes_int dark = hatch(x, y, ink->pattern_px), dots = stipple(x, y, ink->pattern_px);
     lanes_int lines = marks & MARK_LINE_WHOLE << MARK_LINE;
-    marks = lanes_choose_int(uncertain & dots, (r + PATTERN_STIPPLE) | lines, marks);
-    marks = lanes_choose_int(no_limits, r + (rule(y, ink->pattern_px) ? PATTERN_PLAIN_DARK : PATTERN_PLAIN_LIGHT), marks);
-    return lanes_choose_int(no_data, lanes_choose_int(dark, r + PATTERN_HATCH_DARK, r + PATTERN_HATCH_LIGHT), marks);
+    marks = lanes_choose_int(patterns->uncertain & dots, (r + PATTERN_STIPPLE) | lines, marks);
+    marks = lanes_choose_int(patterns->no_limits, r + (rule(y, ink->pattern_px) ? PATTERN_PLAIN_DARK : PATTERN_PLAIN_LIGHT), marks);
+    return lanes_choose_int(patterns->no_data, lanes_choose_int(dark, r + PATTERN_HATCH_DARK, r + PATTERN_HATCH_LIGHT), marks);
 }
 
 #endif

@@ -127,7 +127,8 @@ SOFT_INLINE lanes_int marks_at(const struct setup *setup, const struct mark_ink 
         little *= w;
         free *= w;
     }
-    return pattern_marks(marks, none > 0.5f, little > 0.5f, (free > 0.5f) & -(int32_t)ink->rich, b, x, y, ink);
+    struct eight_patterns patterns = { none > 0.5f, little > 0.5f, (free > 0.5f) & -(int32_t)ink->rich };
+    return pattern_marks(marks, &patterns, b, x, y, ink);
 }
 
 /* Narrows the range left..right of columns in a row of pixels to those inside the face, plus one column at each end. */
@@ -206,35 +207,33 @@ SOFT_INLINE void draw_face(const struct soft_tile *tile, const struct soft_sampl
 /* --- small ones ------------------------------------------------------------------------------------------------------------- */
 
 /* Draws a face of at most 4 x 2 pixels in one stamp (a block of eight pixels that is drawn as a unit). */
-SOFT_INLINE void draw_by_one(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face,
-                             const struct small *small, int l, int top, uint32_t mark, const struct mark_ink *ink)
+SOFT_INLINE void draw_by_one(const struct small_pen *pen, const struct soft_face *face, int l, int top)
 {
-    int last_left = tile->rect.right + 1 - LANES / 2, last_top = tile->rect.bottom - 1;
+    int last_left = pen->tile->rect.right + 1 - LANES / 2, last_top = pen->tile->rect.bottom - 1;
     int left = face->left < last_left ? face->left : last_left;
-    draw_stamp(tile, sample, face, small, l, left, top < last_top ? top : last_top, mark, ink, true, true);
+    draw_stamp(pen, face, l, left, top < last_top ? top : last_top, true, true);
 }
 
 /* Draws up to eight faces grouped by size class, so that the CPU predicts branches well. The order must be the same on every
    machine: of two faces at equal depth, the one drawn last is visible. */
-SOFT_INLINE void draw_kinds(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *const faces[LANES],
-                            const struct small *small, const struct kinds *kinds, uint32_t rows, uint32_t mark, const struct mark_ink *ink)
+SOFT_INLINE void draw_kinds(const struct small_pen *pen, const struct soft_face *const faces[LANES], const struct kinds *kinds,
+                            uint32_t rows)
 {
     for (uint32_t bits = kinds->one; bits; bits &= bits - 1)
-        draw_by_one(tile, sample, faces[__builtin_ctz(bits)], small, __builtin_ctz(bits), faces[__builtin_ctz(bits)]->top, mark, ink);
-    if (can_draw_sixteen(tile, ink)) {
-        draw_sixteen(tile, sample, faces, small, kinds, rows, mark, ink);
+        draw_by_one(pen, faces[__builtin_ctz(bits)], __builtin_ctz(bits), faces[__builtin_ctz(bits)]->top);
+    if (can_draw_sixteen(pen->tile, pen->ink)) {
+        draw_sixteen(pen, faces, kinds, rows);
         return;
     }
     for (uint32_t bits = kinds->four; bits; bits &= bits - 1)
         for (int half = 0; half < 4; half += 2)
-            draw_by_one(tile, sample, faces[__builtin_ctz(bits)], small, __builtin_ctz(bits), faces[__builtin_ctz(bits)]->top + half, mark,
-                        ink);
+            draw_by_one(pen, faces[__builtin_ctz(bits)], __builtin_ctz(bits), faces[__builtin_ctz(bits)]->top + half);
     for (uint32_t bits = kinds->two; bits; bits &= bits - 1)
-        draw_small(tile, sample, faces[__builtin_ctz(bits)], small, __builtin_ctz(bits), mark, ink, true);
+        draw_small(pen, faces[__builtin_ctz(bits)], __builtin_ctz(bits), true);
     uint32_t row[] = { kinds->low, rows };
     for (int i = 0; i < 2; i++)
         for (uint32_t bits = row[i]; bits; bits &= bits - 1)
-            draw_small(tile, sample, faces[__builtin_ctz(bits)], small, __builtin_ctz(bits), mark, ink, false);
+            draw_small(pen, faces[__builtin_ctz(bits)], __builtin_ctz(bits), false);
 }
 
 SOFT_INLINE void draw_eight(const struct soft_tile *tile, const struct soft_face *const faces[LANES], int count, uint32_t mark,
@@ -245,8 +244,10 @@ SOFT_INLINE void draw_eight(const struct soft_tile *tile, const struct soft_face
     struct kinds kinds = kinds_of(tile, &eight, count);
     uint32_t rows = ((1u << count) - 1) & ~(kinds.one | kinds.four | kinds.two | kinds.low);
     small_init(&small, &tile->corners, eight.corners, tile->samples[0].marks != NULL);
-    for (int s = 0; s < tile->sample_count; s++)
-        draw_kinds(tile, &tile->samples[s], faces, &small, &kinds, rows, mark, ink);
+    for (int s = 0; s < tile->sample_count; s++) {
+        struct small_pen pen = { .tile = tile, .sample = &tile->samples[s], .small = &small, .ink = ink, .mark = mark };
+        draw_kinds(&pen, faces, &kinds, rows);
+    }
 }
 
 /* --- all -------------------------------------------------------------------------------------------------------------------- */

@@ -249,10 +249,10 @@ SOFT_INLINE lanes_int marks_of_field(const struct pixel_row *pixels, const struc
     if (ink->line_px > 0)
         carried_steps(pixels, rect, column, row, carried, &by_x, &by_y);
     marks = ink->rich ? rich_mark(carried, by_x, by_y, light, ink) : field_mark(carried, light, ink->last_row);
-    lanes_int no_limits = values.no_limits & -(int32_t)ink->rich;
-    if (!lanes_any(values.no_data | values.uncertain | no_limits))
+    struct eight_patterns patterns = { values.no_data, values.uncertain, values.no_limits & -(int32_t)ink->rich };
+    if (!lanes_any(patterns.no_data | patterns.uncertain | patterns.no_limits))
         return marks;
-    return pattern_marks(marks, values.no_data, values.uncertain, no_limits, light, x, (float)row + 0.5f, ink);
+    return pattern_marks(marks, &patterns, light, x, (float)row + 0.5f, ink);
 }
 
 /* Finds those of eight pixels whose mark (colour code) is MARK_PIXELS, which means that the field must be evaluated at the

@@ -98,11 +98,12 @@ SOFT_INLINE sixteen_int many_within(sixteen x, int32_t high)
 }
 
 /* Draws one stamp (block of 16 pixels drawn as a unit), in rows of `width` pixels. Follows the same rules as draw_stamp(),
-   whose stamps have eight pixels. l: index of the face in `small`. */
-SOFT_INLINE void draw_many(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face,
-                           const struct small *small, int l, int left, int top, uint32_t mark, const struct mark_ink *ink, int width,
-                           bool thin)
+   whose stamps have eight pixels. l: index of the face in pen->small. */
+SOFT_INLINE void draw_many(const struct small_pen *pen, const struct soft_face *face, int l, int left, int top, int width, bool thin)
 {
+    const struct soft_tile *tile = pen->tile;
+    const struct soft_sample *sample = pen->sample;
+    const struct small *small = pen->small;
     size_t pitch = (size_t)tile->pitch_px, place = place_in(tile, left, top);
     sixteen x = many_x(width) + ((float)left + 0.5f + sample->x), y = many_y(width) + ((float)top + 0.5f + sample->y);
     sixteen from_x = x - small->x[l], from_y = y - small->y[l];
@@ -113,10 +114,11 @@ SOFT_INLINE void draw_many(const struct soft_tile *tile, const struct soft_sampl
     if (sample->marks) {
         sixteen a = many_value(small, l, 1, from_x, from_y, thin), b = many_value(small, l, 2, from_x, from_y, thin);
         sixteen_int marks;
-        if (mark != MARK_FIELD)
-            marks = __builtin_convertvector(a + 0.5f, sixteen_int) << 8 | __builtin_convertvector(b + 0.5f, sixteen_int) | (int32_t)mark;
+        if (pen->mark != MARK_FIELD)
+            marks =
+                __builtin_convertvector(a + 0.5f, sixteen_int) << 8 | __builtin_convertvector(b + 0.5f, sixteen_int) | (int32_t)pen->mark;
         else
-            marks = (many_within(b, ink->last_row) * COLORMAP_COLUMNS + many_within(a, COLORMAP_PLACES + 1)) | (int32_t)MARK_FIELD;
+            marks = (many_within(b, pen->ink->last_row) * COLORMAP_COLUMNS + many_within(a, COLORMAP_PLACES + 1)) | (int32_t)MARK_FIELD;
         many_put_ints(sample->marks + place, pitch, width, seen, marks);
     }
     many_put_floats(sample->depth + place, pitch, width, (sixteen)_mm512_mask_mov_ps((__m512)depth, seen, (__m512)here));
@@ -124,18 +126,17 @@ SOFT_INLINE void draw_many(const struct soft_tile *tile, const struct soft_sampl
         many_put_ints(sample->ids + place, pitch, width, seen, (sixteen_int){ 0 } + (int32_t)soft_id(tile, face));
 }
 
-SOFT_INLINE void draw_by_many(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face,
-                              const struct small *small, int l, uint32_t mark, const struct mark_ink *ink, int width)
+SOFT_INLINE void draw_by_many(const struct small_pen *pen, const struct soft_face *face, int l, int width)
 {
-    int height = MANY / width, last_left = tile->rect.right + 1 - width, last_top = tile->rect.bottom + 1 - height;
+    int height = MANY / width, last_left = pen->tile->rect.right + 1 - width, last_top = pen->tile->rect.bottom + 1 - height;
     for (int y = face->top; y <= face->bottom; y += height) {
         int top = y < last_top ? y : last_top;
         for (int x = face->left; x <= face->right; x += width) {
             int left = x < last_left ? x : last_left;
-            if (small->thin[l])
-                draw_many(tile, sample, face, small, l, left, top, mark, ink, width, true);
+            if (pen->small->thin[l])
+                draw_many(pen, face, l, left, top, width, true);
             else
-                draw_many(tile, sample, face, small, l, left, top, mark, ink, width, false);
+                draw_many(pen, face, l, left, top, width, false);
         }
     }
 }
@@ -147,22 +148,21 @@ SOFT_INLINE bool can_draw_sixteen(const struct soft_tile *tile, const struct mar
     return !ink->rich && tile->rect.right - tile->rect.left >= MANY - 1 && tile->rect.bottom - tile->rect.top >= 3;
 }
 
-SOFT_INLINE void draw_sixteen(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *const faces[LANES],
-                              const struct small *small, const struct kinds *kinds, uint32_t rows, uint32_t mark,
-                              const struct mark_ink *ink)
+SOFT_INLINE void draw_sixteen(const struct small_pen *pen, const struct soft_face *const faces[LANES], const struct kinds *kinds,
+                              uint32_t rows)
 {
-    int last_left = tile->rect.right - 3, last_top = tile->rect.bottom - 3;
+    int last_left = pen->tile->rect.right - 3, last_top = pen->tile->rect.bottom - 3;
     for (uint32_t bits = kinds->four; bits; bits &= bits - 1) {
         int l = __builtin_ctz(bits);
         int left = faces[l]->left < last_left ? faces[l]->left : last_left, top = faces[l]->top < last_top ? faces[l]->top : last_top;
-        draw_many(tile, sample, faces[l], small, l, left, top, mark, ink, 4, true);
+        draw_many(pen, faces[l], l, left, top, 4, true);
     }
     for (uint32_t bits = kinds->two; bits; bits &= bits - 1)
-        draw_by_many(tile, sample, faces[__builtin_ctz(bits)], small, __builtin_ctz(bits), mark, ink, 4);
+        draw_by_many(pen, faces[__builtin_ctz(bits)], __builtin_ctz(bits), 4);
     for (uint32_t bits = kinds->low; bits; bits &= bits - 1)
-        draw_by_many(tile, sample, faces[__builtin_ctz(bits)], small, __builtin_ctz(bits), mark, ink, MANY);
+        draw_by_many(pen, faces[__builtin_ctz(bits)], __builtin_ctz(bits), MANY);
     for (uint32_t bits = rows; bits; bits &= bits - 1)
-        draw_by_many(tile, sample, faces[__builtin_ctz(bits)], small, __builtin_ctz(bits), mark, ink, MANY / 2);
+        draw_by_many(pen, faces[__builtin_ctz(bits)], __builtin_ctz(bits), MANY / 2);
 }
 
 #else
@@ -174,11 +174,10 @@ SOFT_INLINE bool can_draw_sixteen(const struct soft_tile *tile, const struct mar
     return false;
 }
 
-SOFT_INLINE void draw_sixteen(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *const faces[LANES],
-                              const struct small *small, const struct kinds *kinds, uint32_t rows, uint32_t mark,
-                              const struct mark_ink *ink)
+SOFT_INLINE void draw_sixteen(const struct small_pen *pen, const struct soft_face *const faces[LANES], const struct kinds *kinds,
+                              uint32_t rows)
 {
-    (void)tile, (void)sample, (void)faces, (void)small, (void)kinds, (void)rows, (void)mark, (void)ink;
+    (void)pen, (void)faces, (void)kinds, (void)rows;
 }
 
 #endif

@@ -155,13 +155,23 @@ SOFT_INLINE size_t place_in(const struct soft_tile *tile, int column, int row)
     return (size_t)(row - tile->rect.top) * (size_t)tile->pitch_px + (size_t)(column - tile->rect.left);
 }
 
+/* Parameters that are the same for all small faces drawn together in one sample of a tile. */
+struct small_pen {
+    const struct soft_tile *tile;
+    const struct soft_sample *sample;
+    const struct small *small; /* equations of the faces */
+    const struct mark_ink *ink;
+    uint32_t mark; /* mark (content of a pixel) of the faces */
+};
+
 /* Draws one stamp (block of pixels drawn as a unit) of eight pixels: depth and mark where the face covers a pixel and is nearest. l: index
-   of the face in `small`. left, top: position in the frame. two: two rows of four instead of one of eight. two, thin: compile-time
+   of the face in pen->small. left, top: position in the frame. two: two rows of four instead of one of eight. two, thin: compile-time
    constants. */
-SOFT_INLINE void draw_stamp(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face,
-                            const struct small *small, int l, int left, int top, uint32_t mark, const struct mark_ink *ink, bool two,
-                            bool thin)
+SOFT_INLINE void draw_stamp(const struct small_pen *pen, const struct soft_face *face, int l, int left, int top, bool two, bool thin)
 {
+    const struct soft_tile *tile = pen->tile;
+    const struct soft_sample *sample = pen->sample;
+    const struct small *small = pen->small;
     size_t pitch = (size_t)tile->pitch_px, place = place_in(tile, left, top);
     lanes x = (two ? (lanes){ 0, 1, 2, 3, 0, 1, 2, 3 } : LANES_IOTA) + ((float)left + 0.5f + sample->x);
     lanes y = (two ? (lanes){ 0, 0, 0, 0, 1, 1, 1, 1 } : (lanes){ 0 }) + ((float)top + 0.5f + sample->y);
@@ -176,12 +186,12 @@ SOFT_INLINE void draw_stamp(const struct soft_tile *tile, const struct soft_samp
     if (sample->marks) {
         lanes a = small_value(small, l, 1, from_x, from_y, thin), b = small_value(small, l, 2, from_x, from_y, thin);
         lanes_int marks;
-        if (mark != MARK_FIELD)
-            marks = context_mark(a, b, mark);
-        else if (ink->rich)
-            marks = rich_mark(a, none + small->dx[1][l], none + small->dy[1][l], b, ink);
+        if (pen->mark != MARK_FIELD)
+            marks = context_mark(a, b, pen->mark);
+        else if (pen->ink->rich)
+            marks = rich_mark(a, none + small->dx[1][l], none + small->dy[1][l], b, pen->ink);
         else
-            marks = field_mark(a, b, ink->last_row);
+            marks = field_mark(a, b, pen->ink->last_row);
         stamp_put_ints(sample->marks + place, pitch, two, lanes_choose_int(seen, marks, stamp_ints(sample->marks + place, pitch, two)));
     }
     stamp_put_floats(sample->depth + place, pitch, two, lanes_choose(seen, here, depth));
@@ -193,19 +203,18 @@ SOFT_INLINE void draw_stamp(const struct soft_tile *tile, const struct soft_samp
 
 /* Draws a face stamp by stamp (blocks of pixels drawn as a unit). Stamps stay within the tile, because other threads draw outside. The last
    stamps of a row or column may therefore overlap earlier ones, which is harmless: drawing a pixel twice has no effect. */
-SOFT_INLINE void draw_small(const struct soft_tile *tile, const struct soft_sample *sample, const struct soft_face *face,
-                            const struct small *small, int l, uint32_t mark, const struct mark_ink *ink, bool two)
+SOFT_INLINE void draw_small(const struct small_pen *pen, const struct soft_face *face, int l, bool two)
 {
     int width = two ? LANES / 2 : LANES, height = two ? 2 : 1;
-    int last_left = tile->rect.right + 1 - width, last_top = tile->rect.bottom + 1 - height;
+    int last_left = pen->tile->rect.right + 1 - width, last_top = pen->tile->rect.bottom + 1 - height;
     for (int y = face->top; y <= face->bottom; y += height) {
         int top = y < last_top ? y : last_top;
         for (int x = face->left; x <= face->right; x += width) {
             int left = x < last_left ? x : last_left;
-            if (small->thin[l])
-                draw_stamp(tile, sample, face, small, l, left, top, mark, ink, two, true);
+            if (pen->small->thin[l])
+                draw_stamp(pen, face, l, left, top, two, true);
             else
-                draw_stamp(tile, sample, face, small, l, left, top, mark, ink, two, false);
+                draw_stamp(pen, face, l, left, top, two, false);
         }
     }
 }

@@ -113,14 +113,19 @@ SIMD_BODY void choose(const mask *which, const lanes *x, const lanes *otherwise,
     *out = (lanes)((*which & (mask)*x) | (~*which & (mask)*otherwise));
 }
 
+/* An edge from p to b, and the side from p to the triangle's third point c, in each lane. */
+struct edge_lanes {
+    const lanes *d_of_p;          /* distance from the source to p */
+    lanes d_of_b, p_to_b, p_to_c; /* distance from the source to b; lengths of the edge and of the side */
+};
+
 /* Computes, in each lane, the distance at which the path through the edge from p to b reaches point c. p is at distance d from
  * the source, b at db. The edge has length pb, the side from p to c length pc and the cosine and sine of its angle to the edge.
  * The source is placed in the triangle's plane, beyond the edge. The result is INFINITY where the ray from the source to c does
  * not pass between p and b. It is also INFINITY where db exceeds `reached`, because such a distance is not final. */
-SIMD_BODY void through_edge(const lanes *d_of_p, const lanes *reached, const lanes *d_of_b, const lanes *p_to_b, const lanes *p_to_c,
-                            const lanes *cosine, const lanes *sine, lanes *out)
+SIMD_BODY void through_edge(const struct edge_lanes *edge, const lanes *reached, const lanes *cosine, const lanes *sine, lanes *out)
 {
-    const lanes zero = { 0 }, infinite = zero + INFINITY, d = *d_of_p, db = *d_of_b, pb = *p_to_b, pc = *p_to_c;
+    const lanes zero = { 0 }, infinite = zero + INFINITY, d = *edge->d_of_p, db = edge->d_of_b, pb = edge->p_to_b, pc = edge->p_to_c;
     lanes sx = (d - db) * (d + db) / (2 * pb) + 0.5f * pb, sy2 = (d - sx) * (d + sx);
     mask seen = (sy2 >= zero) & (db <= *reached);
     lanes sy = (lanes)(seen & (mask)sy2), cx = pc * *cosine, cy = pc * *sine;
@@ -143,11 +148,12 @@ SIMD_BODY void offers_of(const lanes *d_of_p, const lanes *reached, const lanes 
     lanes next = __builtin_shufflevector(here, here, 1, 2, 3, 4, 5, 6, 7, 7);
     lanes next_length = __builtin_shufflevector(length, length, 1, 2, 3, 4, 5, 6, 7, 7);
     mask to_here = here > next;
-    lanes near, near_length, far_length, through, to_this, to_next;
-    choose(&to_here, &next, &here, &near);
-    choose(&to_here, &next_length, &length, &near_length);
-    choose(&to_here, &length, &next_length, &far_length);
-    through_edge(d_of_p, reached, &near, &near_length, &far_length, cosine, sine, &through);
+    struct edge_lanes edge = { .d_of_p = d_of_p };
+    lanes through, to_this, to_next;
+    choose(&to_here, &next, &here, &edge.d_of_b);
+    choose(&to_here, &next_length, &length, &edge.p_to_b);
+    choose(&to_here, &length, &next_length, &edge.p_to_c);
+    through_edge(&edge, reached, cosine, sine, &through);
     choose(&to_here, &through, &infinite, &to_this);
     choose(&to_here, &infinite, &through, &to_next);
     to_next = __builtin_shufflevector(to_next, infinite, 8, 0, 1, 2, 3, 4, 5, 6);
