@@ -74,22 +74,19 @@ const heldBack = (where, said) => {
     assert.deepEqual(Object.entries(held).filter(([, how]) => how === 'succeeded'), [], where);
 };
 
-test('a compromised matcher can access nothing of the daemon or the machine', { skip: unguarded }, async () => {
+test('a compromised matcher can access nothing of the daemon or the machine', { skip: unguarded }, async (t) => {
     const plant = await TinyPlant.create();
-    try {
-        assert.equal(plant.prepare().code, 0);
-        await plant.startDaemon();
-        const secret = join(plant.folder, 'signing-key.pem'), list = join(plant.folder, 'list.csv');
-        writeFileSync(secret, 'secret', { mode: 0o600 });
-        writeFileSync(list, 'Tag Name,Address\nTI-9,400009\n');
-        const targets = `${plant.daemon.child.pid} ${plant.port} ${secret} ${join(plant.folder, 'tags.csv')}`;
-        const { status, stdout, stderr } = spawnSync(join(BIN, 'plantcast'), ['match', plant.file, list, '--dry-run'], { encoding: 'utf8',
-            env: { ...process.env, LD_PRELOAD: `${ESCAPE}.so`, PLANTCAST_TARGETS: targets, PLANTCAST_ESCAPE: 'a secret' } });
-        assert.equal(status, 0, stderr);
-        heldBack('the matcher', stdout);
-    } finally {
-        await plant.destroy();
-    }
+    t.after(() => plant.destroy());
+    assert.equal(plant.prepare().code, 0);
+    await plant.startDaemon();
+    const secret = join(plant.folder, 'signing-key.pem'), list = join(plant.folder, 'list.csv');
+    writeFileSync(secret, 'secret', { mode: 0o600 });
+    writeFileSync(list, 'Tag Name,Address\nTI-9,400009\n');
+    const targets = `${plant.daemon.child.pid} ${plant.port} ${secret} ${join(plant.folder, 'tags.csv')}`;
+    const { status, stdout, stderr } = spawnSync(join(BIN, 'plantcast'), ['match', plant.file, list, '--dry-run'], { encoding: 'utf8',
+        env: { ...process.env, LD_PRELOAD: `${ESCAPE}.so`, PLANTCAST_TARGETS: targets, PLANTCAST_ESCAPE: 'a secret' } });
+    assert.equal(status, 0, stderr);
+    heldBack('the matcher', stdout);
 });
 
 // The models have changed since they were prepared, so the daemon runs plantcast-prep when it starts.

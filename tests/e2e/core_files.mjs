@@ -256,28 +256,25 @@ test('a standby that is refused for its token is named, with the reason', option
     await learns(core, isSame);
 });
 
-test('a saved tag list reaches a renderer', { skip: notBuilt(), timeout: 240000 }, async () => {
+test('a saved tag list reaches a renderer', { skip: notBuilt(), timeout: 240000 }, async (t) => {
     const nodes = await Nodes.create({ slowDevice: true });
-    try {
-        const core = await nodes.core();
-        const file = copyPlant(nodes.plant.file, join(nodes.plant.folder, 'r'));
-        const renderer = await nodes.start(['--role', 'render', '--core', core.url, '--core-token-file', nodes.rendererFile, '--node', 'r',
-            '--port', '0'], file);
-        const isThere = async () => await renderer.metric(`plantcast_core_up{core="${core.url}"}`) === 1;
-        await until('readings', isThere);
-        await save(core, 0.25);
-        await renderer.program.line(TAKEN);
-        await until('readings again', isThere);
-        await renderer.program.line(/reload: configuration \S+ replaced/);
-        assert.equal(renderer.program.said.match(/reload: configuration \S+ replaced/g).length, 1, 'the renderer loads once');
-        assert.equal(list({ file }), list(nodes.plant));
-        assert.deepEqual(await positionOf(renderer), [0.5, 0, 0.25]);
-        appendFileSync(tagsOf({ file }), PADDING);
-        const edited = list({ file });
-        await save(core, 0.3);
-        await renderer.program.line(/tags\.csv on node r was edited there, or never was equal to the core's list/);
-        assert.equal(list({ file }), edited);
-    } finally {
-        await nodes.destroy();
-    }
+    t.after(() => nodes.destroy());
+    const core = await nodes.core();
+    const file = copyPlant(nodes.plant.file, join(nodes.plant.folder, 'r'));
+    const renderer = await nodes.start(['--role', 'render', '--core', core.url, '--core-token-file', nodes.rendererFile, '--node', 'r',
+        '--port', '0'], file);
+    const isThere = async () => await renderer.metric(`plantcast_core_up{core="${core.url}"}`) === 1;
+    await until('readings', isThere);
+    await save(core, 0.25);
+    await renderer.program.line(TAKEN);
+    await until('readings again', isThere);
+    await renderer.program.line(/reload: configuration \S+ replaced/);
+    assert.equal(renderer.program.said.match(/reload: configuration \S+ replaced/g).length, 1, 'the renderer loads once');
+    assert.equal(list({ file }), list(nodes.plant));
+    assert.deepEqual(await positionOf(renderer), [0.5, 0, 0.25]);
+    appendFileSync(tagsOf({ file }), PADDING);
+    const edited = list({ file });
+    await save(core, 0.3);
+    await renderer.program.line(/tags\.csv on node r was edited there, or never was equal to the core's list/);
+    assert.equal(list({ file }), edited);
 });

@@ -468,20 +468,17 @@ test('SIGTERM: clients are notified, and the daemon exits cleanly', { skip }, as
     assert.ok(!/ERROR: |WARNING: ThreadSanitizer/.test(plant.daemon.said), plant.daemon.said);
 });
 
-test('a missing encoder is reported by name, and clients get JPEG', { skip }, async () => {
+test('a missing encoder is reported by name, and clients get JPEG', { skip }, async (t) => {
     const other = await TinyPlant.create();
-    try {
-        assert.equal(other.prepare().code, 0);
-        await other.startDaemon('--h264', 'h264_nothing');
-        const said = /no H\.264 encoder named 'h264_nothing'[^]*H\.264 encoder h264_nothing does not work on this machine/;
-        await other.daemon.line(said);
-        const client = await PlainClient.open(other.port);
-        assert.equal((await client.hello({ codecs: ['h264', 'jpeg'] })).codec, 'jpeg');
-        await client.frameWhere('a JPEG', (f) => f.codec === 'jpeg' || f.codec === 1);
-        client.close();
-    } finally {
-        await other.destroy();
-    }
+    t.after(() => other.destroy());
+    assert.equal(other.prepare().code, 0);
+    await other.startDaemon('--h264', 'h264_nothing');
+    const said = /no H\.264 encoder named 'h264_nothing'[^]*H\.264 encoder h264_nothing does not work on this machine/;
+    await other.daemon.line(said);
+    const client = await PlainClient.open(other.port);
+    assert.equal((await client.hello({ codecs: ['h264', 'jpeg'] })).codec, 'jpeg');
+    await client.frameWhere('a JPEG', (f) => f.codec === 'jpeg' || f.codec === 1);
+    client.close();
 });
 
 test('a test whose daemon crashes fails, and names the signal', { skip }, async () => {

@@ -58,42 +58,39 @@ for (const [name, screen] of Object.entries(SCREENS))
     });
 
 // The plant lies at survey coordinates (far from the origin), except for one box at the origin, as some CAD models contain.
-test('a notice names assets far outside the first view, and its button shows everything', options, async () => {
+test('a notice names assets far outside the first view, and its button shows everything', options, async (t) => {
     const far = await TinyPlant.create(), at = [260978, 7007098, 12];
+    t.after(() => far.destroy());
     const text = readFileSync(far.file, 'utf8').replace('model: box.gltf,', `model: box.gltf, placement: { translate: [${at}] },`)
         .replace('translate: [3, 0, 0]', `translate: [${at[0] + 3}, ${at[1]}, ${at[2]}]`);
     writeFileSync(far.file, text.replace('groups:', '  - { id: STRAY, model: box.gltf }\ngroups:'));
-    try {
-        const tags = join(far.folder, 'tags.csv'), moved = (line, i) => line &&
-            line.split(',').map((cell, c) => (i > 0 && c >= 7 && c <= 9 ? Number(cell) + at[c - 7] : cell)).join(',');
-        writeFileSync(tags, readFileSync(tags, 'utf8').split('\n').map(moved).join('\n'));
-        assert.equal(far.prepare().code, 0);
-        assert.match(runProgram('plantcastd', ['--check', far.file]).err, /leaves out a part of asset STRAY at /);
-        await far.startSim();
-        await far.startDaemon();
-        for (const [language, screen, title, all] of [
-            ['en', SCREENS.desk, 'Outside the first view, up to 7012 km away: STRAY', 'Show everything'],
-            ['de', SCREENS.desk, 'Außerhalb der ersten Ansicht, bis 7012 km entfernt: STRAY', 'Alles zeigen'],
-            ['ko', PHONE, '첫 화면 밖, 최대 7012 km 거리: STRAY', '전체 보기']]) {
-            await withPage(`http://127.0.0.1:${far.port}/?lang=${language}`, screen, async (page) => {
-                await waitForPicture(page);
-                const notice = page.locator('.chip.outside');
-                await notice.waitFor();
-                assert.equal(await notice.locator('span').textContent(), title);
-                await arrive(page);
-                await shoot(page, `outside-${language}`);
-                await notice.getByRole('button', { name: all }).click();
-                await page.waitForFunction(() => {
-                    const { session: { camera }, cameraController } = globalThis.plantcast;
-                    return cameraController && !cameraController.fly && Math.hypot(...camera.eye.map((m, i) => m - camera.target[i])) > 1e6;
-                });
-                await arrive(page);
-                await shoot(page, `outside-all-${language}`);
-                await notice.locator('button').last().click();
-                await notice.waitFor({ state: 'hidden' });
+    const tags = join(far.folder, 'tags.csv'), moved = (line, i) => line &&
+        line.split(',').map((cell, c) => (i > 0 && c >= 7 && c <= 9 ? Number(cell) + at[c - 7] : cell)).join(',');
+    writeFileSync(tags, readFileSync(tags, 'utf8').split('\n').map(moved).join('\n'));
+    assert.equal(far.prepare().code, 0);
+    assert.match(runProgram('plantcastd', ['--check', far.file]).err, /leaves out a part of asset STRAY at /);
+    await far.startSim();
+    await far.startDaemon();
+    for (const [language, screen, title, all] of [
+        ['en', SCREENS.desk, 'Outside the first view, up to 7012 km away: STRAY', 'Show everything'],
+        ['de', SCREENS.desk, 'Außerhalb der ersten Ansicht, bis 7012 km entfernt: STRAY', 'Alles zeigen'],
+        ['ko', PHONE, '첫 화면 밖, 최대 7012 km 거리: STRAY', '전체 보기']]) {
+        await withPage(`http://127.0.0.1:${far.port}/?lang=${language}`, screen, async (page) => {
+            await waitForPicture(page);
+            const notice = page.locator('.chip.outside');
+            await notice.waitFor();
+            assert.equal(await notice.locator('span').textContent(), title);
+            await arrive(page);
+            await shoot(page, `outside-${language}`);
+            await notice.getByRole('button', { name: all }).click();
+            await page.waitForFunction(() => {
+                const { session: { camera }, cameraController } = globalThis.plantcast;
+                return cameraController && !cameraController.fly && Math.hypot(...camera.eye.map((m, i) => m - camera.target[i])) > 1e6;
             });
-        }
-    } finally {
-        await far.destroy();
+            await arrive(page);
+            await shoot(page, `outside-all-${language}`);
+            await notice.locator('button').last().click();
+            await notice.waitFor({ state: 'hidden' });
+        });
     }
 });

@@ -71,30 +71,27 @@ test('under the systemd unit\'s system call filter, an import reads IFC, for whi
 
 test('under the systemd unit\'s system call filter, the daemon draws with llvmpipe, streams and records', {
     skip: skip || unfiltered,
-}, async () => {
+}, async (t) => {
     const plant = await TinyPlant.create();
-    try {
-        assert.equal(plant.prepare().code, 0);
-        plant.disown();
-        plant.confine('tests/support/confined.py', UNIT);
-        await plant.startDaemon('--gl', 'egl-surfaceless');
-        assert.match(readFileSync(`/proc/${plant.daemon.child.pid}/status`, 'utf8'), /^Seccomp:\t2$/m);
-        const client = await PlainClient.open(plant.port);
-        await client.hello({ codecs: ['h264', 'jpeg'] });
-        const frame = await client.frameWhere('a frame', (f) => f.payload.length > 0);
-        assert.deepEqual([frame.full_width, frame.full_height], [320, 180]);
-        client.say({ type: 'params', seq: 1, baseline: 'now' });
-        await client.text('params');
-        // sends the result of a loop check (comparison of a displayed value with the instrument); the daemon must write and
-        // sync it to disk under the unit's restrictions
-        client.say({ type: 'prove', seq: 1, tag: 'TI-1', expected: 1, tolerance: 1, fail: true });
-        const proved = await client.text('proved');
-        assert.equal(proved.kept, true, plant.daemon.said);
-        client.close();
-        assert.equal((await get(plant.port, '/snapshot.png?width=320&height=200')).status, 200);
-        assert.deepEqual(await plant.daemon.stop(), { code: 0, signal: null }, plant.daemon.said);
-        assert.doesNotMatch(plant.daemon.said, /not permitted|insecure memory/);
-    } finally {
-        await plant.destroy();
-    }
+    t.after(() => plant.destroy());
+    assert.equal(plant.prepare().code, 0);
+    plant.disown();
+    plant.confine('tests/support/confined.py', UNIT);
+    await plant.startDaemon('--gl', 'egl-surfaceless');
+    assert.match(readFileSync(`/proc/${plant.daemon.child.pid}/status`, 'utf8'), /^Seccomp:\t2$/m);
+    const client = await PlainClient.open(plant.port);
+    await client.hello({ codecs: ['h264', 'jpeg'] });
+    const frame = await client.frameWhere('a frame', (f) => f.payload.length > 0);
+    assert.deepEqual([frame.full_width, frame.full_height], [320, 180]);
+    client.say({ type: 'params', seq: 1, baseline: 'now' });
+    await client.text('params');
+    // sends the result of a loop check (comparison of a displayed value with the instrument); the daemon must write and
+    // sync it to disk under the unit's restrictions
+    client.say({ type: 'prove', seq: 1, tag: 'TI-1', expected: 1, tolerance: 1, fail: true });
+    const proved = await client.text('proved');
+    assert.equal(proved.kept, true, plant.daemon.said);
+    client.close();
+    assert.equal((await get(plant.port, '/snapshot.png?width=320&height=200')).status, 200);
+    assert.deepEqual(await plant.daemon.stop(), { code: 0, signal: null }, plant.daemon.said);
+    assert.doesNotMatch(plant.daemon.said, /not permitted|insecure memory/);
 });

@@ -37,7 +37,7 @@ const state = (page, name) => page.evaluate((key) => globalThis.plantcast.module
 const hasEnded = (page) => page.waitForFunction(() => !globalThis.plantcast.modules.there('enterVr').headset);
 const keep = async (page, name) => SHOOTS && writeFileSync(`${SCREENSHOTS}/${name}.png`, await eyesPng(page));
 
-test('the VR button is shown only if there is a headset and the server sends depth', options, async () => {
+test('the VR button is shown only if there is a headset and the server sends depth', options, async (t) => {
     await withPage(`http://127.0.0.1:${plant.port}/`, DESKTOP, async (page) => {
         await waitForPicture(page);
         await page.waitForFunction(() => globalThis.plantcast.modules);
@@ -47,17 +47,14 @@ test('the VR button is shown only if there is a headset and the server sends dep
         assert.deepEqual(files.filter((name) => name.includes('/xr')), []);
     });
     const flat = await TinyPlant.create();
+    t.after(() => flat.destroy());
     writeFileSync(flat.file, readFileSync(flat.file, 'utf8').replace('name: Two boxes', 'name: Two boxes\n  reprojection: off'));
-    try {
-        await flat.start();
-        await flat.set({ 'TI-1': 94, 'TI-2': 94, 'PI-1': 5 });
-        await withHeadset(async (other) => {
-            await other.locator('#enter-vr').waitFor({ state: 'attached' });
-            assert.equal(await other.locator('#enter-vr').isVisible(), false);
-        }, flat);
-    } finally {
-        await flat.destroy();
-    }
+    await flat.start();
+    await flat.set({ 'TI-1': 94, 'TI-2': 94, 'PI-1': 5 });
+    await withHeadset(async (other) => {
+        await other.locator('#enter-vr').waitFor({ state: 'attached' });
+        assert.equal(await other.locator('#enter-vr').isVisible(), false);
+    }, flat);
 });
 
 // Returns the server's snapshot from the position of an eye, which serves as the reference.

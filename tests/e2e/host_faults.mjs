@@ -145,31 +145,28 @@ policy=p\nx509_extensions=x\n[p]\ncommonName=supplied\n[x]\nsubjectAltName=DNS:l
 
 test('a certificate that expires while in use is reported, and a new one is loaded', {
     skip: skip || (missingClocks() ?? false), timeout: 120000,
-}, async () => {
+}, async (t) => {
     const plant = await TinyPlant.create(), clock = new SetClock(at('clock')), ENDS_S = 3600;
-    try {
-        assert.equal(plant.prepare().code, 0);
-        certificate('old', ENDS_S);
-        certificate('new', 90 * 86400);
-        copyFileSync(at('old.pem'), at('cert.pem'));
-        copyFileSync(at('old.key'), at('key.pem'));
-        plant.confine(...clock.starter());
-        await plant.startDaemon('--tls-cert', at('cert.pem'), '--tls-key', at('key.pem'));
-        await plant.daemon.line(/warn .*cert\.pem: this certificate expires within 14 days, in \d\.\d hours/);
-        assert.doesNotMatch(plant.daemon.said, /has expired/);
-        clock.set(ENDS_S);
-        await plant.daemon.line(/error .*cert\.pem: this certificate has expired$/m);
-        const [env, ...variables] = clock.starter(), address = `https://127.0.0.1:${plant.port}/metrics`;
-        const curl = (...args) => spawnSync(env, [...variables, 'curl', '-s', '--max-time', '60', ...args, address], { encoding: 'utf8' });
-        assert.equal(curl('--cacert', at('old.pem')).status, 60, 'curl with the expired certificate fails');
-        const { stdout } = curl('-k');
-        const left = Number(stdout.match(/^plantcast_certificate_expiry_timestamp_seconds (.*)$/m)[1]) * 1000 - clock.now();
-        assert.ok(left <= 0 && left > -ENDS_S * 1000, String(left));
-        for (const [from, to] of [['new.pem', 'cert.pem'], ['new.key', 'key.pem']])
-            copyFileSync(at(from), at(to));
-        await plant.daemon.line(/cert\.pem: serving the new certificate/);
-        assert.equal(curl('--cacert', at('new.pem')).status, 0);
-    } finally {
-        await plant.destroy();
-    }
+    t.after(() => plant.destroy());
+    assert.equal(plant.prepare().code, 0);
+    certificate('old', ENDS_S);
+    certificate('new', 90 * 86400);
+    copyFileSync(at('old.pem'), at('cert.pem'));
+    copyFileSync(at('old.key'), at('key.pem'));
+    plant.confine(...clock.starter());
+    await plant.startDaemon('--tls-cert', at('cert.pem'), '--tls-key', at('key.pem'));
+    await plant.daemon.line(/warn .*cert\.pem: this certificate expires within 14 days, in \d\.\d hours/);
+    assert.doesNotMatch(plant.daemon.said, /has expired/);
+    clock.set(ENDS_S);
+    await plant.daemon.line(/error .*cert\.pem: this certificate has expired$/m);
+    const [env, ...variables] = clock.starter(), address = `https://127.0.0.1:${plant.port}/metrics`;
+    const curl = (...args) => spawnSync(env, [...variables, 'curl', '-s', '--max-time', '60', ...args, address], { encoding: 'utf8' });
+    assert.equal(curl('--cacert', at('old.pem')).status, 60, 'curl with the expired certificate fails');
+    const { stdout } = curl('-k');
+    const left = Number(stdout.match(/^plantcast_certificate_expiry_timestamp_seconds (.*)$/m)[1]) * 1000 - clock.now();
+    assert.ok(left <= 0 && left > -ENDS_S * 1000, String(left));
+    for (const [from, to] of [['new.pem', 'cert.pem'], ['new.key', 'key.pem']])
+        copyFileSync(at(from), at(to));
+    await plant.daemon.line(/cert\.pem: serving the new certificate/);
+    assert.equal(curl('--cacert', at('new.pem')).status, 0);
 });

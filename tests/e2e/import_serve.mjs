@@ -121,41 +121,38 @@ const wrong = (page, pattern) => page.waitForFunction((what) => new RegExp(what)
 
 // --- requests over HTTP
 
-test('uploads with a bad name, a bad size or from another site are refused, and only one import runs at a time', options, async () => {
+test('uploads with a bad name, a bad size or from another site are refused, and only one import runs at a time', options, async (t) => {
     const served = await Served.start();
-    try {
-        const put = (name, body = 'x', headers = {}) => served.post(`/upload?name=${encodeURIComponent(name)}`, body, headers);
-        for (const name of ['../x.glb', 'a/b.glb', '.x.glb', '', 'a\\b.glb', `${'a'.repeat(201)}`])
-            assert.equal((await put(name)).status, 400, JSON.stringify(name));
-        assert.equal((await served.post('/upload?name=x.glb')).status, 413, 'an empty upload is refused');
-        assert.equal((await put('x.glb', 'x', { Origin: 'http://elsewhere.example' })).status, 403);
-        assert.equal((await put('x.glb', 'x', { 'Sec-Fetch-Site': 'cross-site' })).status, 403);
-        assert.equal((await served.post('/run', undefined, { Origin: 'http://elsewhere.example' })).status, 403);
-        assert.equal((await served.post('/run?units=km')).status, 400);
-        const nothing = await served.post('/nothing', 'x');
-        assert.equal(nothing.status, 405);
-        assert.deepEqual((await nothing.text()).match(/\/[\w/]+/g).filter((path) => /import/.test(path)).map((path) => path.slice(15)),
-            ['upload', 'remove', 'run', 'decide', 'source', 'cancel']);
-        assert.equal((await served.api('/matches')).status, 404, 'there are no matches before the first import');
-        assert.deepEqual(readdirSync(join(served.folder, 'exports')), [], 'no upload with a bad name is stored');
-        assert.deepEqual(readdirSync(served.root), ['plant']);
+    t.after(() => served.destroy());
+    const put = (name, body = 'x', headers = {}) => served.post(`/upload?name=${encodeURIComponent(name)}`, body, headers);
+    for (const name of ['../x.glb', 'a/b.glb', '.x.glb', '', 'a\\b.glb', `${'a'.repeat(201)}`])
+        assert.equal((await put(name)).status, 400, JSON.stringify(name));
+    assert.equal((await served.post('/upload?name=x.glb')).status, 413, 'an empty upload is refused');
+    assert.equal((await put('x.glb', 'x', { Origin: 'http://elsewhere.example' })).status, 403);
+    assert.equal((await put('x.glb', 'x', { 'Sec-Fetch-Site': 'cross-site' })).status, 403);
+    assert.equal((await served.post('/run', undefined, { Origin: 'http://elsewhere.example' })).status, 403);
+    assert.equal((await served.post('/run?units=km')).status, 400);
+    const nothing = await served.post('/nothing', 'x');
+    assert.equal(nothing.status, 405);
+    assert.deepEqual((await nothing.text()).match(/\/[\w/]+/g).filter((path) => /import/.test(path)).map((path) => path.slice(15)),
+        ['upload', 'remove', 'run', 'decide', 'source', 'cancel']);
+    assert.equal((await served.api('/matches')).status, 404, 'there are no matches before the first import');
+    assert.deepEqual(readdirSync(join(served.folder, 'exports')), [], 'no upload with a bad name is stored');
+    assert.deepEqual(readdirSync(served.root), ['plant']);
 
-        assert.equal((await put('열교환기 -1.gltf', boxes(['E-1']))).status, 200);
-        assert.equal((await put('tags.csv', TAGS)).status, 200);
-        assert.equal((await put('other.csv', TAGS)).status, 200);
-        assert.deepEqual((await served.idle()).files.map(({ name, kind }) => [name, kind]), [['other.csv', 'tags'],
-            ['열교환기 -1.gltf', 'model']], 'a new tag list replaces the old one');
-        const both = await Promise.all([served.post('/run'), served.post('/run')]);
-        assert.deepEqual(both.map(({ status }) => status).sort(), [200, 409]);
-        const state = await served.idle();
-        assert.equal(state.failed, null, state.failed);
-        assert.match(served.read('plant.yaml'), /model: "열교환기 -1\.glb"/);
-        assert.equal((await served.post('/remove?name=..%2Fplant.yaml')).status, 400);
-        assert.equal((await served.post('/remove?name=other.csv')).status, 200);
-        assert.equal((await served.idle()).files.length, 1);
-    } finally {
-        await served.destroy();
-    }
+    assert.equal((await put('열교환기 -1.gltf', boxes(['E-1']))).status, 200);
+    assert.equal((await put('tags.csv', TAGS)).status, 200);
+    assert.equal((await put('other.csv', TAGS)).status, 200);
+    assert.deepEqual((await served.idle()).files.map(({ name, kind }) => [name, kind]), [['other.csv', 'tags'],
+        ['열교환기 -1.gltf', 'model']], 'a new tag list replaces the old one');
+    const both = await Promise.all([served.post('/run'), served.post('/run')]);
+    assert.deepEqual(both.map(({ status }) => status).sort(), [200, 409]);
+    const state = await served.idle();
+    assert.equal(state.failed, null, state.failed);
+    assert.match(served.read('plant.yaml'), /model: "열교환기 -1\.glb"/);
+    assert.equal((await served.post('/remove?name=..%2Fplant.yaml')).status, 400);
+    assert.equal((await served.post('/remove?name=other.csv')).status, 200);
+    assert.equal((await served.idle()).files.length, 1);
 });
 
 test('at most four uploads run at a time, and one that trickles is ended', options, async () => {
@@ -187,21 +184,19 @@ test('at most four uploads run at a time, and one that trickles is ended', optio
     }
 });
 
-test('a daemon that does not serve imports has none of the import URLs', options, async () => {
+test('a daemon that does not serve imports has none of the import URLs', options, async (t) => {
     const { TinyPlant } = await import('./support/tiny_plant.mjs'), plant = await TinyPlant.running();
-    try {
-        const url = `http://127.0.0.1:${plant.port}/api/v1/import`;
-        assert.equal((await fetch(url)).status, 404);
-        const upload = await fetch(`${url}/upload?name=x.glb`, { method: 'POST', body: 'x' });
-        assert.deepEqual([upload.status, await upload.text()], [405, 'only GET and HEAD are allowed (POST: /api/v1/reload, /logout)\n']);
-        assert.equal(existsSync(join(plant.folder, 'exports')), false);
-    } finally {
-        await plant.destroy();
-    }
+    t.after(() => plant.destroy());
+    const url = `http://127.0.0.1:${plant.port}/api/v1/import`;
+    assert.equal((await fetch(url)).status, 404);
+    const upload = await fetch(`${url}/upload?name=x.glb`, { method: 'POST', body: 'x' });
+    assert.deepEqual([upload.status, await upload.text()], [405, 'only GET and HEAD are allowed (POST: /api/v1/reload, /logout)\n']);
+    assert.equal(existsSync(join(plant.folder, 'exports')), false);
 });
 
-test('a failed import gives one error line, and the previous plant stays', options, async () => {
+test('a failed import gives one error line, and the previous plant stays', options, async (t) => {
     const served = await Served.start();
+    t.after(() => served.destroy());
     const put = (name, body) => served.post(`/upload?name=${encodeURIComponent(name)}`, body);
     const fails = async (pattern) => {
         await served.post('/run');
@@ -209,37 +204,34 @@ test('a failed import gives one error line, and the previous plant stays', optio
         assert.match(failed, pattern);
         assert.doesNotMatch(failed, /\n/);
     };
-    try {
-        const before = served.read('plant.yaml');
-        await put('plant.gltf', boxes(['E-1']));
-        await put('plant.glb', 'glTF cut off');
-        await fails(/plant\.glb and .*plant\.gltf would both be written as plant\.glb: rename one of these files/);
-        await served.post('/remove?name=plant.gltf');
-        await fails(/plant\.glb: /);
-        await served.post('/remove?name=plant.glb');
-        await put('plant.dwg', 'x');
-        await fails(/plant\.dwg: /);
-        assert.equal(served.read('plant.yaml'), before);
-        await served.post('/remove?name=plant.dwg');
-        await fails(/no model has been uploaded yet/);
-        await put('plant.gltf', boxes(['E-1', 'P-2']));
-        await put('tags.csv', '\u0000\u0001');
-        await fails(/tags\.csv/);
-        assert.match(served.read('plant.yaml'), /id: "P-2"/, 'the new models stay');
-        await put('tags.csv', TAGS);
-        await served.post('/run?what=tags');
-        assert.equal((await served.idle()).failed, null);
-        const kept = ['plant.yaml', 'tags.csv', 'matches.csv'].map((name) => served.read(name));
-        await served.post('/decide', 'Tag,Status,Asset\nTT-9999,sure,nowhere\n');
-        assert.match((await served.idle()).failed, /TT-9999: no asset of the plant is called 'nowhere'/);
-        assert.deepEqual(['plant.yaml', 'tags.csv', 'matches.csv'].map((name) => served.read(name)), kept);
-    } finally {
-        await served.destroy();
-    }
+    const before = served.read('plant.yaml');
+    await put('plant.gltf', boxes(['E-1']));
+    await put('plant.glb', 'glTF cut off');
+    await fails(/plant\.glb and .*plant\.gltf would both be written as plant\.glb: rename one of these files/);
+    await served.post('/remove?name=plant.gltf');
+    await fails(/plant\.glb: /);
+    await served.post('/remove?name=plant.glb');
+    await put('plant.dwg', 'x');
+    await fails(/plant\.dwg: /);
+    assert.equal(served.read('plant.yaml'), before);
+    await served.post('/remove?name=plant.dwg');
+    await fails(/no model has been uploaded yet/);
+    await put('plant.gltf', boxes(['E-1', 'P-2']));
+    await put('tags.csv', '\u0000\u0001');
+    await fails(/tags\.csv/);
+    assert.match(served.read('plant.yaml'), /id: "P-2"/, 'the new models stay');
+    await put('tags.csv', TAGS);
+    await served.post('/run?what=tags');
+    assert.equal((await served.idle()).failed, null);
+    const kept = ['plant.yaml', 'tags.csv', 'matches.csv'].map((name) => served.read(name));
+    await served.post('/decide', 'Tag,Status,Asset\nTT-9999,sure,nowhere\n');
+    assert.match((await served.idle()).failed, /TT-9999: no asset of the plant is called 'nowhere'/);
+    assert.deepEqual(['plant.yaml', 'tags.csv', 'matches.csv'].map((name) => served.read(name)), kept);
 });
 
-test('an import that fails or is cancelled after placing its models restores the previous models, too', options, async () => {
+test('an import that fails or is cancelled after placing its models restores the previous models, too', options, async (t) => {
     const served = await Served.start();
+    t.after(() => served.destroy());
     // hashes of the folder's files by name, without earlier versions of replaced files (NAME.1, NAME.2, ...)
     const files = () => Object.fromEntries(readdirSync(served.folder, { withFileTypes: true })
         .filter((entry) => entry.isFile() && !/\.\d+$/.test(entry.name))
@@ -248,79 +240,75 @@ test('an import that fails or is cancelled after placing its models restores the
         await served.post('/upload?name=plant.gltf', boxes(names));
         await served.post(`/run${how}`);
     };
-    try {
-        await served.post('/upload?name=tags.csv', TAGS);
-        const prepared = join(served.folder, readdirSync(served.folder).find((name) => /prepared/.test(name)));
-        const breaks = async (how) => { // makes preparing fail
-            renameSync(prepared, `${prepared}.away`);
-            writeFileSync(prepared, '');
-            const before = files();
-            await bring([...NAMES, 'K-501'], how);
-            const { failed } = await served.idle();
-            assert.match(failed, /prepared/);
-            assert.doesNotMatch(failed, /undone/);
-            assert.deepEqual(files(), before, `the files are as before: ${how}`);
-            rmSync(prepared);
-            renameSync(`${prepared}.away`, prepared);
-        };
-        await breaks('');
-        assert.match(served.read('plant.yaml'), /person\.glb/);
-        await bring(NAMES);
-        assert.equal((await served.idle()).failed, null);
-        await breaks('');
-        await breaks('?what=anew&units=ft');
-        // A model converted by a program that waits as long as the file `wait` exists, so that an import cannot end before it
-        // is cancelled.
-        const [wait, drawing] = ['wait', 'box.cad'].map((name) => join(served.folder, name));
-        const command = 'test -e "${1%/*}/wait" && touch waits && sleep 100; cp "$1" "$2"';
-        writeFileSync(drawing, boxes(['Box']));
-        writeFileSync(join(served.folder, 'plant.yaml'), served.read('plant.yaml').replace(/^assets:\n/m,
-            `convert:\n  - { model: box.glb, from: box.cad, command: ${JSON.stringify(command)} }\n\n$&` +
-            '  - { id: BOX, model: box.glb }\n'));
-        copyFileSync(drawing, join(served.folder, 'box.glb'));
-        await bring(NAMES);
-        assert.equal((await served.idle()).failed, null);
-        const isWaiting = () => readdirSync(served.folder).some((name) => existsSync(join(served.folder, name, 'waits')));
-        const before = files(), mine = createHash('md5').update('mine\n').digest('hex');
-        for (const saves of [false, true]) {
-            writeFileSync(wait, '');
-            writeFileSync(drawing, boxes(['Box'], saves ? 2 : 3));
-            await bring([...NAMES, saves ? 'X-1' : 'X-2']);
-            while (!isWaiting())
-                await new Promise((done) => setTimeout(done, 10));
-            assert.equal((await (await served.api('')).json()).phase, 'preparing');
-            assert.notEqual(files()['plant.glb'], before['plant.glb'], 'the new model is in place');
-            // While the import holds the folder's lock, other Plantcast programs refuse to change the folder. A program that
-            // ignores the lock and writes a file (matches.csv) does not lose it when the import is cancelled.
-            const other = spawnSync(join(BIN, 'plantcast'), ['match', served.folder, join(served.folder, 'exports/tags.csv')]);
-            assert.match(String(other.stderr), /^plantcast match: .*: plantcastd \(process \d+\) is using the plant's folder\n$/);
-            if (saves)
-                writeFileSync(join(served.folder, 'matches.csv'), 'mine\n');
-            rmSync(wait);
-            await served.post('/cancel');
-            const { failed } = await served.idle(), after = files();
-            assert.match(failed, /^plantcast-prep was stopped before it finished: the import was cancelled, or the daemon is stopping$/);
-            for (const name of ['plant.yaml', 'plant.glb', 'tags.csv'])
-                assert.equal(after[name], before[name], name);
-            if (saves)
-                assert.ok([after['matches.csv'], after['matches.csv.undone']].includes(mine));
-            else
-                assert.equal(after['matches.csv'], before['matches.csv']);
-        }
-        // While another process holds the folder's lock, an import does not start.
-        const held = spawn('flock', [served.folder, 'sh', '-c', 'echo held; read line'], { stdio: ['pipe', 'pipe', 'ignore'] });
-        await once(held.stdout, 'data');
-        const now = files();
-        await bring([...NAMES, 'X-3']);
+    await served.post('/upload?name=tags.csv', TAGS);
+    const prepared = join(served.folder, readdirSync(served.folder).find((name) => /prepared/.test(name)));
+    const breaks = async (how) => { // makes preparing fail
+        renameSync(prepared, `${prepared}.away`);
+        writeFileSync(prepared, '');
+        const before = files();
+        await bring([...NAMES, 'K-501'], how);
         const { failed } = await served.idle();
-        held.stdin.end();
-        assert.match(failed, new RegExp('^the plant\'s folder .* cannot be locked: (flock|sh) \\(process \\d+\\) is using the plant\'s ' +
-            'folder; try again later$'));
-        assert.deepEqual(files(), now);
-        assert.equal(readdirSync(served.folder).filter((name) => /^\.(import|revision\.)/.test(name)).length, 0);
-    } finally {
-        await served.destroy();
+        assert.match(failed, /prepared/);
+        assert.doesNotMatch(failed, /undone/);
+        assert.deepEqual(files(), before, `the files are as before: ${how}`);
+        rmSync(prepared);
+        renameSync(`${prepared}.away`, prepared);
+    };
+    await breaks('');
+    assert.match(served.read('plant.yaml'), /person\.glb/);
+    await bring(NAMES);
+    assert.equal((await served.idle()).failed, null);
+    await breaks('');
+    await breaks('?what=anew&units=ft');
+    // A model converted by a program that waits as long as the file `wait` exists, so that an import cannot end before it
+    // is cancelled.
+    const [wait, drawing] = ['wait', 'box.cad'].map((name) => join(served.folder, name));
+    const command = 'test -e "${1%/*}/wait" && touch waits && sleep 100; cp "$1" "$2"';
+    writeFileSync(drawing, boxes(['Box']));
+    writeFileSync(join(served.folder, 'plant.yaml'), served.read('plant.yaml').replace(/^assets:\n/m,
+        `convert:\n  - { model: box.glb, from: box.cad, command: ${JSON.stringify(command)} }\n\n$&` +
+        '  - { id: BOX, model: box.glb }\n'));
+    copyFileSync(drawing, join(served.folder, 'box.glb'));
+    await bring(NAMES);
+    assert.equal((await served.idle()).failed, null);
+    const isWaiting = () => readdirSync(served.folder).some((name) => existsSync(join(served.folder, name, 'waits')));
+    const before = files(), mine = createHash('md5').update('mine\n').digest('hex');
+    for (const saves of [false, true]) {
+        writeFileSync(wait, '');
+        writeFileSync(drawing, boxes(['Box'], saves ? 2 : 3));
+        await bring([...NAMES, saves ? 'X-1' : 'X-2']);
+        while (!isWaiting())
+            await new Promise((done) => setTimeout(done, 10));
+        assert.equal((await (await served.api('')).json()).phase, 'preparing');
+        assert.notEqual(files()['plant.glb'], before['plant.glb'], 'the new model is in place');
+        // While the import holds the folder's lock, other Plantcast programs refuse to change the folder. A program that
+        // ignores the lock and writes a file (matches.csv) does not lose it when the import is cancelled.
+        const other = spawnSync(join(BIN, 'plantcast'), ['match', served.folder, join(served.folder, 'exports/tags.csv')]);
+        assert.match(String(other.stderr), /^plantcast match: .*: plantcastd \(process \d+\) is using the plant's folder\n$/);
+        if (saves)
+            writeFileSync(join(served.folder, 'matches.csv'), 'mine\n');
+        rmSync(wait);
+        await served.post('/cancel');
+        const { failed } = await served.idle(), after = files();
+        assert.match(failed, /^plantcast-prep was stopped before it finished: the import was cancelled, or the daemon is stopping$/);
+        for (const name of ['plant.yaml', 'plant.glb', 'tags.csv'])
+            assert.equal(after[name], before[name], name);
+        if (saves)
+            assert.ok([after['matches.csv'], after['matches.csv.undone']].includes(mine));
+        else
+            assert.equal(after['matches.csv'], before['matches.csv']);
     }
+    // While another process holds the folder's lock, an import does not start.
+    const held = spawn('flock', [served.folder, 'sh', '-c', 'echo held; read line'], { stdio: ['pipe', 'pipe', 'ignore'] });
+    await once(held.stdout, 'data');
+    const now = files();
+    await bring([...NAMES, 'X-3']);
+    const { failed } = await served.idle();
+    held.stdin.end();
+    assert.match(failed, new RegExp('^the plant\'s folder .* cannot be locked: (flock|sh) \\(process \\d+\\) is using the plant\'s ' +
+        'folder; try again later$'));
+    assert.deepEqual(files(), now);
+    assert.equal(readdirSync(served.folder).filter((name) => /^\.(import|revision\.)/.test(name)).length, 0);
 });
 
 test('the import reports duplicate rows and a tag name with control characters', options, async () => {

@@ -170,36 +170,33 @@ test('repeated reloads by signal, under clients that move, disconnect nobody', o
 
 // The tag list is replaced by a named pipe: reading it blocks until a writer opens the pipe, so the test decides when the
 // reload ends.
-test('a client whose answer takes too long gets an error, and can ask again', options, async () => {
+test('a client whose answer takes too long gets an error, and can ask again', options, async (t) => {
     const other = await TinyPlant.create(), tags = join(other.folder, 'tags.csv'), aside = join(other.folder, 'aside.csv');
+    t.after(() => other.destroy());
     const ask = () => fetch(`http://127.0.0.1:${other.port}/api/v1/reload`, { method: 'POST' });
-    try {
-        assert.equal(other.prepare().code, 0);
-        await other.startDaemon('--limit', 'answer-wait=1');
-        renameSync(tags, aside);
-        assert.equal(spawnSync('mkfifo', [tags]).status, 0);
-        const late = await ask();
-        assert.equal(late.status, 503);
-        assert.equal(late.headers.get('retry-after'), '2');
-        assert.match(await late.text(), /^no answer within 1 s \(.*\); try again$/m);
-        assert.equal((await fetch(`http://127.0.0.1:${other.port}/api/v1/plant`)).status, 200);
-        const pipe = join(other.folder, 'pipe');
-        renameSync(tags, pipe);
-        renameSync(aside, tags);
-        // the blocked reload, and requests that joined it, fail because the pipe is empty; the loop repeats the request until
-        // one reads the restored list
-        let again;
-        for (let i = 0; i < 100 && again?.status !== 200; i++) {
-            try {
-                // opens the pipe for writing, which lets a reload that waits for it go on
-                closeSync(openSync(pipe, constants.O_WRONLY | constants.O_NONBLOCK));
-            } catch (error) {
-                assert.equal(error.code, 'ENXIO'); // ENXIO: no reload has the pipe open for reading, so none is blocked
-            }
-            again = await ask();
+    assert.equal(other.prepare().code, 0);
+    await other.startDaemon('--limit', 'answer-wait=1');
+    renameSync(tags, aside);
+    assert.equal(spawnSync('mkfifo', [tags]).status, 0);
+    const late = await ask();
+    assert.equal(late.status, 503);
+    assert.equal(late.headers.get('retry-after'), '2');
+    assert.match(await late.text(), /^no answer within 1 s \(.*\); try again$/m);
+    assert.equal((await fetch(`http://127.0.0.1:${other.port}/api/v1/plant`)).status, 200);
+    const pipe = join(other.folder, 'pipe');
+    renameSync(tags, pipe);
+    renameSync(aside, tags);
+    // the blocked reload, and requests that joined it, fail because the pipe is empty; the loop repeats the request until
+    // one reads the restored list
+    let again;
+    for (let i = 0; i < 100 && again?.status !== 200; i++) {
+        try {
+            // opens the pipe for writing, which lets a reload that waits for it go on
+            closeSync(openSync(pipe, constants.O_WRONLY | constants.O_NONBLOCK));
+        } catch (error) {
+            assert.equal(error.code, 'ENXIO'); // ENXIO: no reload has the pipe open for reading, so none is blocked
         }
-        assert.equal(again.status, 200, await again.text());
-    } finally {
-        await other.destroy();
+        again = await ask();
     }
+    assert.equal(again.status, 200, await again.text());
 });

@@ -119,22 +119,19 @@ test('a start that prepares the plant asks for more time meanwhile, and ends on 
 
 const alone = spawnSync('unshare', ['--pid', '--fork', 'true']).status === 0 ? skip : 'there are no process namespaces';
 
-test('as the first process of a container, the daemon ends on SIGTERM while it prepares the plant', { skip: alone }, async () => {
+test('as the first process of a container, the daemon ends on SIGTERM while it prepares the plant', { skip: alone }, async (t) => {
     const tiny = await unprepared();
-    try {
-        const child = spawn('unshare', ['--pid', '--fork', '--kill-child', join(BIN, 'plantcastd'), tiny.file, '--port', '0'],
-            { stdio: 'pipe' });
-        let said = '';
-        child.stderr.on('data', (chunk) => { said += chunk; });
-        const ended = new Promise((done) => child.once('exit', (code) => done(code)));
-        await until('a model that is made', () => /creating .*more\.glb/.test(said), 30, () => said);
-        const [first] = readFileSync(`/proc/${child.pid}/task/${child.pid}/children`, 'utf8').split(' ');
-        process.kill(Number(first), 'SIGTERM');
-        assert.equal(await ended, 0, said);
-        assert.match(said, /stopping while plantcast-prep prepares the plant; the next start continues/);
-    } finally {
-        await tiny.destroy();
-    }
+    t.after(() => tiny.destroy());
+    const child = spawn('unshare', ['--pid', '--fork', '--kill-child', join(BIN, 'plantcastd'), tiny.file, '--port', '0'],
+        { stdio: 'pipe' });
+    let said = '';
+    child.stderr.on('data', (chunk) => { said += chunk; });
+    const ended = new Promise((done) => child.once('exit', (code) => done(code)));
+    await until('a model that is made', () => /creating .*more\.glb/.test(said), 30, () => said);
+    const [first] = readFileSync(`/proc/${child.pid}/task/${child.pid}/children`, 'utf8').split(' ');
+    process.kill(Number(first), 'SIGTERM');
+    assert.equal(await ended, 0, said);
+    assert.match(said, /stopping while plantcast-prep prepares the plant; the next start continues/);
 });
 
 for (const [thread, what] of [['render', 'the render thread'], ['plantcastd', 'the loop']])

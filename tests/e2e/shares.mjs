@@ -59,29 +59,26 @@ test('one address\'s hidden views of the largest size leave room for another add
     greedy.close();
 });
 
-test('32 hidden views of the largest size leave another address 5 frames a second', crowded, async () => {
+test('32 hidden views of the largest size leave another address 5 frames a second', crowded, async (t) => {
     const roomy = await TinyPlant.create();
-    try {
-        assert.equal(roomy.prepare().code, 0);
-        await roomy.startDaemon('--limit', 'pixels=1073741824', '--limit', 'address-pixels=1073741824');
-        const rate = async () => {
-            const other = await PlainClient.open(roomy.port, OTHER);
-            await other.hello({ width: 1920, height: 1080 });
-            const frames = await framesPerSecond(other, 4);
-            other.close();
-            return frames;
-        };
-        const alone = await rate(), greedy = await crowd(32, GREEDY, LARGE, roomy.port);
-        assert.equal(greedy.admitted.length, 32);
-        for (const client of greedy.admitted)
-            client.say({ type: 'visible', visible: false });
-        const beside = await rate();
-        console.log(`# 1920x1080: ${alone.toFixed(1)} frames/s alone, ${beside.toFixed(1)} beside 32 hidden views`);
-        greedy.close();
-        assert.ok(beside >= Math.min(5, alone / 5), `only ${beside.toFixed(1)} frames/s beside the hidden views`);
-    } finally {
-        await roomy.destroy();
-    }
+    t.after(() => roomy.destroy());
+    assert.equal(roomy.prepare().code, 0);
+    await roomy.startDaemon('--limit', 'pixels=1073741824', '--limit', 'address-pixels=1073741824');
+    const rate = async () => {
+        const other = await PlainClient.open(roomy.port, OTHER);
+        await other.hello({ width: 1920, height: 1080 });
+        const frames = await framesPerSecond(other, 4);
+        other.close();
+        return frames;
+    };
+    const alone = await rate(), greedy = await crowd(32, GREEDY, LARGE, roomy.port);
+    assert.equal(greedy.admitted.length, 32);
+    for (const client of greedy.admitted)
+        client.say({ type: 'visible', visible: false });
+    const beside = await rate();
+    console.log(`# 1920x1080: ${alone.toFixed(1)} frames/s alone, ${beside.toFixed(1)} beside 32 hidden views`);
+    greedy.close();
+    assert.ok(beside >= Math.min(5, alone / 5), `only ${beside.toFixed(1)} frames/s beside the hidden views`);
 });
 
 // Measures what an address other than the greedy one gets: frames per second, and the status of and seconds for a small
@@ -128,37 +125,34 @@ test('an address that requests everything leaves another its frames and its pict
     assert.ok(answers.includes(200) && answers.includes(503), 'the greedy address gets some pictures, and not all');
 });
 
-test('behind a proxy, connections count for the address that the proxy names', options, async () => {
+test('behind a proxy, connections count for the address that the proxy names', options, async (t) => {
     const proxied = await TinyPlant.create();
-    try {
-        assert.equal(proxied.prepare().code, 0);
-        await proxied.startDaemon('--behind-proxy', '--host', 'plant.example', '--open-viewers', '--limit', 'connections=200');
-        const head = (from) => `GET /healthz HTTP/1.1\r\nHost: plant.example\r\nX-Forwarded-For: ${from}\r\n\r\n`;
-        // Sends a request on a new connection that stays open afterwards, from the client address that the proxy header names.
-        // Resolves with its status and socket.
-        const keep = (from) => new Promise((done) => {
-            const socket = connect(proxied.port, '127.0.0.1', () => socket.write(head(from)));
-            socket.once('data', (bytes) => done({ socket, status: Number(bytes.toString().split(' ')[1]) }));
-            socket.once('error', () => done({ socket, status: 0 }));
-            socket.once('close', () => { socket.gone = true; done({ socket, status: 0 }); });
-        });
-        const kept = [];
-        for (let i = 0; i < 250; i++)
-            kept.push(await keep('203.0.113.7'));
-        assert.equal(kept.filter(({ status }) => status === 200).length, 64);
-        assert.ok(kept.slice(64).every(({ status }) => status === 503));
-        assert.equal((await keep('203.0.113.8')).status, 200);
-        assert.equal((await keep(`${'198.51.100.1, '.repeat(50)}203.0.113.9`)).status, 431);
-        assert.equal((await keep('127.0.0.1')).status, 200);
-        for (let i = 0; i < 70; i++)
-            kept.push(await keep('127.0.0.1')); // behind a proxy the per-address limit applies to every address, also to 127.0.0.1
-        assert.equal(kept.at(-1).status, 503);
-        for (const { socket } of kept)
-            socket.destroy();
-        for (let status = 503, end = performance.now() + 5000; status !== 200 && performance.now() < end; await sleep(50))
-            ({ status } = await keep('203.0.113.7'));
-        assert.equal((await keep('203.0.113.7')).status, 200, 'closed connections make room');
-    } finally {
-        await proxied.destroy();
-    }
+    t.after(() => proxied.destroy());
+    assert.equal(proxied.prepare().code, 0);
+    await proxied.startDaemon('--behind-proxy', '--host', 'plant.example', '--open-viewers', '--limit', 'connections=200');
+    const head = (from) => `GET /healthz HTTP/1.1\r\nHost: plant.example\r\nX-Forwarded-For: ${from}\r\n\r\n`;
+    // Sends a request on a new connection that stays open afterwards, from the client address that the proxy header names.
+    // Resolves with its status and socket.
+    const keep = (from) => new Promise((done) => {
+        const socket = connect(proxied.port, '127.0.0.1', () => socket.write(head(from)));
+        socket.once('data', (bytes) => done({ socket, status: Number(bytes.toString().split(' ')[1]) }));
+        socket.once('error', () => done({ socket, status: 0 }));
+        socket.once('close', () => { socket.gone = true; done({ socket, status: 0 }); });
+    });
+    const kept = [];
+    for (let i = 0; i < 250; i++)
+        kept.push(await keep('203.0.113.7'));
+    assert.equal(kept.filter(({ status }) => status === 200).length, 64);
+    assert.ok(kept.slice(64).every(({ status }) => status === 503));
+    assert.equal((await keep('203.0.113.8')).status, 200);
+    assert.equal((await keep(`${'198.51.100.1, '.repeat(50)}203.0.113.9`)).status, 431);
+    assert.equal((await keep('127.0.0.1')).status, 200);
+    for (let i = 0; i < 70; i++)
+        kept.push(await keep('127.0.0.1')); // behind a proxy the per-address limit applies to every address, also to 127.0.0.1
+    assert.equal(kept.at(-1).status, 503);
+    for (const { socket } of kept)
+        socket.destroy();
+    for (let status = 503, end = performance.now() + 5000; status !== 200 && performance.now() < end; await sleep(50))
+        ({ status } = await keep('203.0.113.7'));
+    assert.equal((await keep('203.0.113.7')).status, 200, 'closed connections make room');
 });

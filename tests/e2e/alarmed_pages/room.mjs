@@ -74,53 +74,50 @@ const inSight = (page, name) => page.evaluate((tag) => {
 
 for (const name of WALKED) {
     const screen = SCREENS[name];
-    test(`${name}: an alarm, its place, its trend, the past and the engineer's panel are all complete and usable`, options, async () => {
+    test(`${name}: an alarm, its place, its trend, the past and the engineer's panel are all complete and usable`, options, async (t) => {
         const browser = await openPage(url, screen), { page } = browser, file = name.replace(' ', '-');
+        t.after(() => browser.close());
         const press = (selector) => (screen.hasTouch ? page.locator(selector).first().tap() : page.locator(selector).first().click());
-        try {
-            await waitForPicture(page);
-            await page.waitForFunction(() => globalThis.plantcast.session.model.alarms.list().length > 0 &&
-                globalThis.plantcast.session.recorded && !document.getElementById('legend').hidden);
-            await land(page);
-            await becomes(() => amiss(page), [], 'as it opens');
+        await waitForPicture(page);
+        await page.waitForFunction(() => globalThis.plantcast.session.model.alarms.list().length > 0 &&
+            globalThis.plantcast.session.recorded && !document.getElementById('legend').hidden);
+        await land(page);
+        await becomes(() => amiss(page), [], 'as it opens');
+        await press('#alarm-strip');
+        await page.locator('#alarms-list tr').first().waitFor();
+        await land(page);
+        await becomes(() => amiss(page), [], 'alarms');
+        await page.locator('#alarms-list tr', { hasText: 'TI-1' }).locator('.alarm-go').first().click();
+        await page.locator('#card').waitFor();
+        await arrive(page);
+        await becomes(() => amiss(page), [], 'flown to');
+        await becomes(() => inSight(page, 'TI-1'), 'in sight');
+        await shoot(page, `room-${file}-alarm`);
+        await press('#card .trend'); // opens the trend from the card: press() fails if anything covers the button
+        await page.locator('#trend-chart canvas').waitFor();
+        await press('#time-toggle');
+        await page.locator('#time-slider').waitFor();
+        await arrive(page);
+        await becomes(() => amiss(page), [], 'trend and past');
+        await shoot(page, `room-${file}-trend`);
+        await press('#trend-close');
+        await press('#time-toggle');
+        const listed = await page.locator('#alarms').isVisible();
+        await press('#engineer-toggle');
+        await page.locator('#engineer').waitFor();
+        await page.locator('#alarms').waitFor({ state: 'hidden' }); // one of both is open
+        if (listed) { // if the alarm list was open: opens it again, which closes the engineer's panel, and then the other way round
             await press('#alarm-strip');
-            await page.locator('#alarms-list tr').first().waitFor();
-            await land(page);
-            await becomes(() => amiss(page), [], 'alarms');
-            await page.locator('#alarms-list tr', { hasText: 'TI-1' }).locator('.alarm-go').first().click();
-            await page.locator('#card').waitFor();
-            await arrive(page);
-            await becomes(() => amiss(page), [], 'flown to');
-            await becomes(() => inSight(page, 'TI-1'), 'in sight');
-            await shoot(page, `room-${file}-alarm`);
-            await press('#card .trend'); // opens the trend from the card: press() fails if anything covers the button
-            await page.locator('#trend-chart canvas').waitFor();
-            await press('#time-toggle');
-            await page.locator('#time-slider').waitFor();
-            await arrive(page);
-            await becomes(() => amiss(page), [], 'trend and past');
-            await shoot(page, `room-${file}-trend`);
-            await press('#trend-close');
-            await press('#time-toggle');
-            const listed = await page.locator('#alarms').isVisible();
+            await page.locator('#engineer').waitFor({ state: 'hidden' });
             await press('#engineer-toggle');
-            await page.locator('#engineer').waitFor();
-            await page.locator('#alarms').waitFor({ state: 'hidden' }); // one of both is open
-            if (listed) { // if the alarm list was open: opens it again, which closes the engineer's panel, and then the other way round
-                await press('#alarm-strip');
-                await page.locator('#engineer').waitFor({ state: 'hidden' });
-                await press('#engineer-toggle');
-                await page.locator('#alarms').waitFor({ state: 'hidden' });
-            }
-            await page.locator('#engineer .tags button', { hasText: 'TI-2' }).click();
-            await arrive(page);
-            await becomes(() => amiss(page), [], 'engineer');
-            await becomes(() => inSight(page, 'TI-2'), 'in sight');
-            await shoot(page, `room-${file}-engineer`);
-            assert.deepEqual(browser.errors, []);
-        } finally {
-            await browser.close();
+            await page.locator('#alarms').waitFor({ state: 'hidden' });
         }
+        await page.locator('#engineer .tags button', { hasText: 'TI-2' }).click();
+        await arrive(page);
+        await becomes(() => amiss(page), [], 'engineer');
+        await becomes(() => inSight(page, 'TI-2'), 'in sight');
+        await shoot(page, `room-${file}-engineer`);
+        assert.deepEqual(browser.errors, []);
     });
 }
 

@@ -91,26 +91,23 @@ test('isolating other equipment hides the alarm\'s ring but not its count', opti
     await waitForRing(HOT);
 });
 
-test('an acknowledgement by one user is shown to everybody', options, async () => {
+test('an acknowledgement by one user is shown to everybody', options, async (t) => {
     const other = await openPage(`${plant.url}?wall`, { viewport: { width: 1280, height: 720 } });
-    try {
-        await waitForPicture(other.page);
-        const id = await page.evaluate((hot) => globalThis.plantcast.session.model.alarms.list().find(({ tag, kind }) => tag.name === hot &&
-            kind === 'HH').id, HOT);
-        await page.locator(`tr[data-alarm="${id}"] button[data-action="acknowledge"]`).focus();
-        await page.keyboard.press('Enter');
-        await other.page.waitForFunction(
-            (alarm) => globalThis.plantcast.session.model.alarms.rows.get(alarm)?.state === 'acknowledged', id);
-        await page.waitForFunction((alarm) => globalThis.plantcast.session.model.alarms.rows.get(alarm)?.state === 'acknowledged', id);
-        assert.ok(await other.page.locator('#alarm-strip').isVisible(), 'the wall shows the alarm strip, too');
-        await page.locator(`tr[data-alarm="${id}"]`, { hasText: /Acknowledged.*by local/s }).waitFor();
-        await page.locator(`tr[data-alarm="${id}"] button[data-action="acknowledge"]`).waitFor({ state: 'detached' });
-        await becomes(() => page.evaluate(() => document.activeElement.closest('tr')?.dataset.alarm), id, 'the keyboard stays there');
-        await shoot(other.page, 'alarms-wall');
-        assert.deepEqual(other.errors, []);
-    } finally {
-        await other.close();
-    }
+    t.after(() => other.close());
+    await waitForPicture(other.page);
+    const id = await page.evaluate((hot) => globalThis.plantcast.session.model.alarms.list().find(({ tag, kind }) => tag.name === hot &&
+        kind === 'HH').id, HOT);
+    await page.locator(`tr[data-alarm="${id}"] button[data-action="acknowledge"]`).focus();
+    await page.keyboard.press('Enter');
+    await other.page.waitForFunction(
+        (alarm) => globalThis.plantcast.session.model.alarms.rows.get(alarm)?.state === 'acknowledged', id);
+    await page.waitForFunction((alarm) => globalThis.plantcast.session.model.alarms.rows.get(alarm)?.state === 'acknowledged', id);
+    assert.ok(await other.page.locator('#alarm-strip').isVisible(), 'the wall shows the alarm strip, too');
+    await page.locator(`tr[data-alarm="${id}"]`, { hasText: /Acknowledged.*by local/s }).waitFor();
+    await page.locator(`tr[data-alarm="${id}"] button[data-action="acknowledge"]`).waitFor({ state: 'detached' });
+    await becomes(() => page.evaluate(() => document.activeElement.closest('tr')?.dataset.alarm), id, 'the keyboard stays there');
+    await shoot(other.page, 'alarms-wall');
+    assert.deepEqual(other.errors, []);
 });
 
 test('an alarm\'s row stays under the pressed pointer while other alarms arrive', options, async () => {
@@ -350,38 +347,35 @@ test('at 900 pixels the alarm list shows at least twenty rows, sorts by any colu
     await page.locator('#alarms-priority').selectOption('');
 });
 
-test('the list\'s edge can be dragged and moved by keys; its size survives a reload and can be reset', options, async () => {
+test('the list\'s edge can be dragged and moved by keys; its size survives a reload and can be reset', options, async (t) => {
     const own = await openPage(plant.url, { viewport: { width: 1280, height: 800 } }), on = own.page, edge = on.locator('.alarms > .edge');
+    t.after(() => own.close());
     const opened = async () => {
         await waitForPicture(on);
         await on.locator('#alarm-strip').click();
         await edge.waitFor({ state: 'attached' });
     };
     const width = () => on.evaluate(() => document.getElementById('alarms').offsetWidth);
-    try {
+    await opened();
+    const usual = await width(), { x } = await edge.boundingBox();
+    await on.mouse.move(x + 4, 400);
+    await on.mouse.down();
+    await on.mouse.move(x + 204, 400, { steps: 3 });
+    await on.mouse.up();
+    const dragged = await width();
+    assert.ok(Math.abs(dragged - (usual - 200)) <= 5, `the list's edge moved from ${usual} to ${dragged}`);
+    await edge.press('ArrowLeft');
+    assert.equal(await width(), dragged + 40);
+    // while the window is only 740 pixels wide the panel is narrower, but its stored width must not change
+    for (const screen of [740, 1280]) {
+        await on.setViewportSize({ width: screen, height: 800 });
+        await on.reload();
         await opened();
-        const usual = await width(), { x } = await edge.boundingBox();
-        await on.mouse.move(x + 4, 400);
-        await on.mouse.down();
-        await on.mouse.move(x + 204, 400, { steps: 3 });
-        await on.mouse.up();
-        const dragged = await width();
-        assert.ok(Math.abs(dragged - (usual - 200)) <= 5, `the list's edge moved from ${usual} to ${dragged}`);
-        await edge.press('ArrowLeft');
-        assert.equal(await width(), dragged + 40);
-        // while the window is only 740 pixels wide the panel is narrower, but its stored width must not change
-        for (const screen of [740, 1280]) {
-            await on.setViewportSize({ width: screen, height: 800 });
-            await on.reload();
-            await opened();
-        }
-        assert.equal(await width(), dragged + 40);
-        await edge.dblclick();
-        assert.equal(await width(), usual);
-        assert.deepEqual(own.errors, []);
-    } finally {
-        await own.close();
     }
+    assert.equal(await width(), dragged + 40);
+    await edge.dblclick();
+    assert.equal(await width(), usual);
+    assert.deepEqual(own.errors, []);
 });
 
 test('several alarms are shelved at once with one reason; the list is exported', options, async () => {

@@ -61,30 +61,27 @@ for (const [name, language, screen] of PAGES) {
     const most = screen === PHONE ? MOST_BYTES.touch : MOST_BYTES.desk;
     test(`a page in ${name} loads at most ${kB(most)} in ${MOST_REQUESTS} requests to show the plant`, options, async (t) => {
         const browser = await openCounted(`${url}?lang=${language}`, screen, watchFirst), { page } = browser;
-        try {
-            await waitForPicture(page);
-            await waitForHealth(page, 'live');
-            // waits for the watchdog's canvas, which appears 5 s after the start
-            await page.locator('canvas.watchdog.watches').waitFor({ state: 'attached' });
-            if (screen === PHONE)
-                await page.waitForFunction(() => globalThis.plantcast.modules.there('warp'));
-            await calm(page, browser);
-            const files = await browser.fetched(), requests = browser.answers.map((answer) => `${answer.status()} ${answer.url()}`);
-            assert.deepEqual(requests.filter((text) => !text.startsWith('200')), []);
-            assert.ok(requests.length <= MOST_REQUESTS, requests.join('\n'));
-            assert.equal(files.filter(([path]) => path.includes('watchdog')).length, 3, 'module, words and worker are loaded');
-            t.diagnostic(`${kB(sum(files))} in ${files.length} files; first picture after ` +
-                `${(await page.evaluate(() => globalThis.firstPictureMs)).toFixed(0)} ms`);
-            assert.ok(sum(files) <= most, files.sort((a, b) => b[1] - a[1]).map((file) => file.join(' ')).join('\n'));
-            const hand = files.filter(([path]) => HAND.test(path));
-            assert.equal(hand.length, screen === PHONE ? 3 : 0);
-            const warp = hand.filter(([path]) => path.includes('warp'));
-            t.diagnostic(`${kB(sum(hand))} follow a hand, ${kB(sum(warp))} of them move the picture`);
-            assert.ok(sum(warp) <= MOST_BYTES.warp, warp.join('\n'));
-            assert.deepEqual(browser.errors, []);
-        } finally {
-            await browser.close();
-        }
+        t.after(() => browser.close());
+        await waitForPicture(page);
+        await waitForHealth(page, 'live');
+        // waits for the watchdog's canvas, which appears 5 s after the start
+        await page.locator('canvas.watchdog.watches').waitFor({ state: 'attached' });
+        if (screen === PHONE)
+            await page.waitForFunction(() => globalThis.plantcast.modules.there('warp'));
+        await calm(page, browser);
+        const files = await browser.fetched(), requests = browser.answers.map((answer) => `${answer.status()} ${answer.url()}`);
+        assert.deepEqual(requests.filter((text) => !text.startsWith('200')), []);
+        assert.ok(requests.length <= MOST_REQUESTS, requests.join('\n'));
+        assert.equal(files.filter(([path]) => path.includes('watchdog')).length, 3, 'module, words and worker are loaded');
+        t.diagnostic(`${kB(sum(files))} in ${files.length} files; first picture after ` +
+            `${(await page.evaluate(() => globalThis.firstPictureMs)).toFixed(0)} ms`);
+        assert.ok(sum(files) <= most, files.sort((a, b) => b[1] - a[1]).map((file) => file.join(' ')).join('\n'));
+        const hand = files.filter(([path]) => HAND.test(path));
+        assert.equal(hand.length, screen === PHONE ? 3 : 0);
+        const warp = hand.filter(([path]) => path.includes('warp'));
+        t.diagnostic(`${kB(sum(hand))} follow a hand, ${kB(sum(warp))} of them move the picture`);
+        assert.ok(sum(warp) <= MOST_BYTES.warp, warp.join('\n'));
+        assert.deepEqual(browser.errors, []);
     });
 }
 

@@ -140,20 +140,17 @@ test('a tag may have its own deadband; a deadband that the server refuses is log
     await until('B', { ...good, value: 71 });
 });
 
-test('a server without free sessions is retried until it has one', options, async () => {
+test('a server without free sessions is retried until it has one', options, async (t) => {
     await server.reset({ sessions: 1 });
     await plant.run(server.security(), ROWS);
     const other = await PublishedPlant.create(server);
-    try {
-        other.write(server.security(), ROWS);
-        other.plant.prepare();
-        await other.plant.startDaemon();
-        await other.daemon.line(/no readings \(BadTooManySessions/);
-        await plant.daemon.stop();
-        await other.until('TI-1', { ...good, value: 20 }, 40);
-    } finally {
-        await other.destroy();
-    }
+    t.after(() => other.destroy());
+    other.write(server.security(), ROWS);
+    other.plant.prepare();
+    await other.plant.startDaemon();
+    await other.daemon.line(/no readings \(BadTooManySessions/);
+    await plant.daemon.stop();
+    await other.until('TI-1', { ...good, value: 20 }, 40);
 });
 
 test(`changes of ${MANY} nodes at once all arrive`, options, async () => {

@@ -11,26 +11,23 @@ import { missing, runProgram, TinyPlant } from '../support/tiny_plant.mjs';
 const options = { skip: missing().length > 0 && `not built: ${missing().join(', ')}`, timeout: 120000 };
 const NONE = { hidden: [], isolate: [], ghost: [] };
 
-test('a plant changed since its preparation is prepared when the daemon starts', options, async () => {
+test('a plant changed since its preparation is prepared when the daemon starts', options, async (t) => {
     const tiny = await TinyPlant.create();
-    try {
-        assert.equal(tiny.prepare().code, 0);
-        const text = readFileSync(tiny.file, 'utf8');
-        writeFileSync(tiny.file, text.replace('groups:', '  - { id: NEW, model: box.gltf, placement: { translate: [9, 0, 0] } }\ngroups:'));
-        await tiny.startSim();
-        await tiny.startDaemon();
-        assert.match(tiny.daemon.said, /prepared files are missing or outdated: running plantcast-prep/);
-        const { assets } = await (await fetch(`http://127.0.0.1:${tiny.port}/api/v1/plant`)).json();
-        assert.ok(assets.some(({ id }) => id === 'NEW'));
-        // The model is no valid glTF, so plantcast-prep could not prepare the plant: the daemon must print one line and not start.
-        await tiny.daemon.stop();
-        writeFileSync(join(tiny.folder, 'box.gltf'), '{');
-        const { code, err } = runProgram('plantcastd', [tiny.file, '--port', '0']);
-        assert.equal(code, 1);
-        assert.match(err, /plantcast-prep could not prepare the plant: /);
-    } finally {
-        await tiny.destroy();
-    }
+    t.after(() => tiny.destroy());
+    assert.equal(tiny.prepare().code, 0);
+    const text = readFileSync(tiny.file, 'utf8');
+    writeFileSync(tiny.file, text.replace('groups:', '  - { id: NEW, model: box.gltf, placement: { translate: [9, 0, 0] } }\ngroups:'));
+    await tiny.startSim();
+    await tiny.startDaemon();
+    assert.match(tiny.daemon.said, /prepared files are missing or outdated: running plantcast-prep/);
+    const { assets } = await (await fetch(`http://127.0.0.1:${tiny.port}/api/v1/plant`)).json();
+    assert.ok(assets.some(({ id }) => id === 'NEW'));
+    // The model is no valid glTF, so plantcast-prep could not prepare the plant: the daemon must print one line and not start.
+    await tiny.daemon.stop();
+    writeFileSync(join(tiny.folder, 'box.gltf'), '{');
+    const { code, err } = runProgram('plantcastd', [tiny.file, '--port', '0']);
+    assert.equal(code, 1);
+    assert.match(err, /plantcast-prep could not prepare the plant: /);
 });
 
 test('a plant can start with hidden and ghosted assets; a user who shows all keeps them shown', options, async () => {

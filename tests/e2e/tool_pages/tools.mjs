@@ -84,48 +84,45 @@ test('the distance between two points is measured', options, async () => {
     assert.equal(await page.locator('#card').isVisible(), false, 'a measuring click selects nothing');
 });
 
-test('on a tablet in portrait, the tools behind More work by taps', options, async () => {
+test('on a tablet in portrait, the tools behind More work by taps', options, async (t) => {
     const tablet = await openPage(url, { ...TABLET, viewport: { width: 768, height: 1024 } }), on = tablet.page;
+    t.after(() => tablet.close());
     const tool = async (id) => {
         await on.locator('#more-toggle').tap();
         await on.locator(`#more #${id}`).tap();
     };
-    try {
-        await waitForPicture(on);
-        await on.evaluate(() => {
-            globalThis.plantcast.session.setCamera({ eye: [0.8, -4, 1], target: [0, 0, 0], up: [0, 0, 1], fov: 30 });
-            globalThis.plantcast.viewport.invalidate();
-        });
-        await settle(on);
-        await tool('measure');
-        await on.locator('.measuring').waitFor();
-        for (const [i, end] of [[0, -0.5, 0.2], [0, -0.5, -0.2]].entries()) {
-            const { x, y } = await drawnAt(on, end);
-            await on.touchscreen.tap(x, y);
-            await on.waitForFunction((words) => document.querySelector('.measuring').textContent.includes(words),
-                ['second point', 'measure again'][i]);
-        }
-        assert.ok(Math.abs(parseFloat(await on.locator('#measured').textContent()) - 0.4) < 0.02);
-        await shoot(on, 'tablet-measure');
-        await on.locator('.measuring button').tap();
-        await on.locator('.measuring').waitFor({ state: 'hidden' });
-        await tool('share-open');
-        await on.locator('#share-code svg').waitFor();
-        assert.ok((await scan(on)).startsWith(url));
-        await shoot(on, 'tablet-share');
-        await on.locator('#share .icon').tap();
-        const download = on.waitForEvent('download');
-        await tool('snapshot');
-        assert.match((await download).suggestedFilename(), /\.png$/);
-        await tool('theme');
-        await on.waitForFunction(() => document.documentElement.dataset.theme === 'dark');
-        await tool('help-open');
-        await on.locator('#help[open]').waitFor();
-        await shoot(on, 'tablet-help');
-        assert.deepEqual(tablet.errors, []);
-    } finally {
-        await tablet.close();
+    await waitForPicture(on);
+    await on.evaluate(() => {
+        globalThis.plantcast.session.setCamera({ eye: [0.8, -4, 1], target: [0, 0, 0], up: [0, 0, 1], fov: 30 });
+        globalThis.plantcast.viewport.invalidate();
+    });
+    await settle(on);
+    await tool('measure');
+    await on.locator('.measuring').waitFor();
+    for (const [i, end] of [[0, -0.5, 0.2], [0, -0.5, -0.2]].entries()) {
+        const { x, y } = await drawnAt(on, end);
+        await on.touchscreen.tap(x, y);
+        await on.waitForFunction((words) => document.querySelector('.measuring').textContent.includes(words),
+            ['second point', 'measure again'][i]);
     }
+    assert.ok(Math.abs(parseFloat(await on.locator('#measured').textContent()) - 0.4) < 0.02);
+    await shoot(on, 'tablet-measure');
+    await on.locator('.measuring button').tap();
+    await on.locator('.measuring').waitFor({ state: 'hidden' });
+    await tool('share-open');
+    await on.locator('#share-code svg').waitFor();
+    assert.ok((await scan(on)).startsWith(url));
+    await shoot(on, 'tablet-share');
+    await on.locator('#share .icon').tap();
+    const download = on.waitForEvent('download');
+    await tool('snapshot');
+    assert.match((await download).suggestedFilename(), /\.png$/);
+    await tool('theme');
+    await on.waitForFunction(() => document.documentElement.dataset.theme === 'dark');
+    await tool('help-open');
+    await on.locator('#help[open]').waitFor();
+    await shoot(on, 'tablet-help');
+    assert.deepEqual(tablet.errors, []);
 });
 
 test('a pen turns the picture, and the timings panel shows how soon', options, async () => {
@@ -377,80 +374,71 @@ test('a refusal by the server is shown in the reader\'s language', options, asyn
     await other.close();
 });
 
-test('a leader may reload the page: the followers stay, and continue', options, async () => {
+test('a leader may reload the page: the followers stay, and continue', options, async (t) => {
     const leader = await openPage(url, { viewport: { width: 900, height: 600 } });
-    try {
-        await waitForPicture(leader.page);
-        const id = await leader.page.evaluate(() => globalThis.plantcast.session.id), link = `${url}#follow=${id}`;
-        const second = await openPage(link, { viewport: { width: 1000, height: 700 } });
-        const follows = (gone) => second.page.waitForFunction(([of, is]) => {
-            const following = globalThis.plantcast?.session.following;
-            return following?.session === of && Boolean(following.gone) === is;
-        }, [id, gone]);
-        try {
-            await follows(false);
-            await leader.page.evaluate(() => globalThis.plantcast.session.setParams({ group: 'pressure' }));
-            await second.page.waitForFunction(() => globalThis.plantcast.session.params.group === 'pressure');
-            await leader.page.goto('about:blank');
-            await follows(true);
-            assert.equal(await second.page.evaluate(() => globalThis.plantcast.session.params.group), 'pressure', 'the shown group stays');
-            assert.match(await second.page.locator('#following').textContent(), /has ended: this is its last view/);
-            assert.equal(second.page.url(), link);
-            await settle(second.page);
-            await shoot(second.page, 'following-gone');
-            await leader.page.goto(url);
-            await waitForPicture(leader.page);
-            assert.equal(await leader.page.evaluate(() => globalThis.plantcast.session.id), id, 'the leader has the same session number');
-            assert.notEqual(await leader.page.evaluate(() => globalThis.plantcast.session.params.group), 'pressure',
-                'the view is that of the opened address');
-            await follows(false);
-            await second.page.reload();
-            await follows(false);
-            assert.equal(second.page.url(), link);
-            assert.deepEqual([...leader.errors, ...second.errors], []);
-        } finally {
-            await second.close();
-        }
-    } finally {
-        await leader.close();
-    }
+    t.after(() => leader.close());
+    await waitForPicture(leader.page);
+    const id = await leader.page.evaluate(() => globalThis.plantcast.session.id), link = `${url}#follow=${id}`;
+    const second = await openPage(link, { viewport: { width: 1000, height: 700 } });
+    t.after(() => second.close());
+    const follows = (gone) => second.page.waitForFunction(([of, is]) => {
+        const following = globalThis.plantcast?.session.following;
+        return following?.session === of && Boolean(following.gone) === is;
+    }, [id, gone]);
+    await follows(false);
+    await leader.page.evaluate(() => globalThis.plantcast.session.setParams({ group: 'pressure' }));
+    await second.page.waitForFunction(() => globalThis.plantcast.session.params.group === 'pressure');
+    await leader.page.goto('about:blank');
+    await follows(true);
+    assert.equal(await second.page.evaluate(() => globalThis.plantcast.session.params.group), 'pressure', 'the shown group stays');
+    assert.match(await second.page.locator('#following').textContent(), /has ended: this is its last view/);
+    assert.equal(second.page.url(), link);
+    await settle(second.page);
+    await shoot(second.page, 'following-gone');
+    await leader.page.goto(url);
+    await waitForPicture(leader.page);
+    assert.equal(await leader.page.evaluate(() => globalThis.plantcast.session.id), id, 'the leader has the same session number');
+    assert.notEqual(await leader.page.evaluate(() => globalThis.plantcast.session.params.group), 'pressure',
+        'the view is that of the opened address');
+    await follows(false);
+    await second.page.reload();
+    await follows(false);
+    assert.equal(second.page.url(), link);
+    assert.deepEqual([...leader.errors, ...second.errors], []);
 });
 
-test('others follow; handing over the lead keeps the shown view', options, async () => {
+test('others follow; handing over the lead keeps the shown view', options, async (t) => {
     const id = await page.evaluate(() => globalThis.plantcast.session.id);
     const second = await openPage(`${url}#follow=${id}`, { viewport: { width: 1000, height: 700 } });
-    try {
-        await second.page.waitForFunction((leader) => globalThis.plantcast?.session.following?.session === leader, id);
-        await page.waitForFunction(() => document.getElementById('share-open').dataset.count === '1');
-        const before = await view(page);
-        await page.keyboard.press('k');
-        await page.waitForFunction((words) => document.querySelector('#share[open] #share-people')?.textContent.includes(words),
-            '1 person is following you');
-        await shoot(page, 'share-lead');
-        assert.equal(await page.locator('#share-people button').textContent(), 'Hand over to Viewer');
-        await page.locator('#share-people button').click();
-        const heir = await second.page.evaluate(() => globalThis.plantcast.session.id);
-        await page.waitForFunction((leader) => globalThis.plantcast.session.following?.session === leader, heir);
-        await second.page.waitForFunction(() => globalThis.plantcast.session.following === null);
-        await page.locator('#following', { hasText: 'Following the view of another user' }).waitFor();
-        await second.page.evaluate(() => globalThis.plantcast.session.setParams({ group: 'pressure' }));
-        await page.waitForFunction(() => globalThis.plantcast.session.params.group === 'pressure');
-        // The second session may become the leader before it has received its first picture, so the test waits for that.
-        await second.page.waitForFunction(() => {
-            const { picture, paramsSeq } = globalThis.plantcast.session;
-            return picture?.paramsSeq === paramsSeq;
-        });
-        const after = await view(second.page), seen = await second.page.evaluate(() => globalThis.plantcast.session.picture.camera.eye);
-        for (const eye of [after.camera.eye, seen])
-            eye.forEach((m, i) => assert.ok(Math.abs(m - before.camera.eye[i]) < 1e-3, `the shown camera stays: ${eye}`));
-        await page.keyboard.press('Escape');
-        await shoot(page, 'following');
-        await page.locator('#following button').click();
-        await page.waitForFunction(() => globalThis.plantcast.session.following === null);
-        assert.deepEqual(second.errors, []);
-    } finally {
-        await second.close();
-    }
+    t.after(() => second.close());
+    await second.page.waitForFunction((leader) => globalThis.plantcast?.session.following?.session === leader, id);
+    await page.waitForFunction(() => document.getElementById('share-open').dataset.count === '1');
+    const before = await view(page);
+    await page.keyboard.press('k');
+    await page.waitForFunction((words) => document.querySelector('#share[open] #share-people')?.textContent.includes(words),
+        '1 person is following you');
+    await shoot(page, 'share-lead');
+    assert.equal(await page.locator('#share-people button').textContent(), 'Hand over to Viewer');
+    await page.locator('#share-people button').click();
+    const heir = await second.page.evaluate(() => globalThis.plantcast.session.id);
+    await page.waitForFunction((leader) => globalThis.plantcast.session.following?.session === leader, heir);
+    await second.page.waitForFunction(() => globalThis.plantcast.session.following === null);
+    await page.locator('#following', { hasText: 'Following the view of another user' }).waitFor();
+    await second.page.evaluate(() => globalThis.plantcast.session.setParams({ group: 'pressure' }));
+    await page.waitForFunction(() => globalThis.plantcast.session.params.group === 'pressure');
+    // The second session may become the leader before it has received its first picture, so the test waits for that.
+    await second.page.waitForFunction(() => {
+        const { picture, paramsSeq } = globalThis.plantcast.session;
+        return picture?.paramsSeq === paramsSeq;
+    });
+    const after = await view(second.page), seen = await second.page.evaluate(() => globalThis.plantcast.session.picture.camera.eye);
+    for (const eye of [after.camera.eye, seen])
+        eye.forEach((m, i) => assert.ok(Math.abs(m - before.camera.eye[i]) < 1e-3, `the shown camera stays: ${eye}`));
+    await page.keyboard.press('Escape');
+    await shoot(page, 'following');
+    await page.locator('#following button').click();
+    await page.waitForFunction(() => globalThis.plantcast.session.following === null);
+    assert.deepEqual(second.errors, []);
 });
 
 test('the theme switches to dark and back to light, and survives a reload', options, async () => {
