@@ -79,6 +79,18 @@ static void put_on(const struct demo_scene *bench, enum dress dress, struct view
     }
 }
 
+/* Draws a frame. *time_ms receives the elapsed time, *work_ms the processor time. */
+static void measure_frame(struct demo_scene *bench, const struct view *view, double *time_ms, double *work_ms)
+{
+    double began_ms = measure_ms(CLOCK_MONOTONIC), worked_ms = measure_ms(CLOCK_PROCESS_CPUTIME_ID);
+    struct frame *frame = split_view_draw_now(bench->renderer, view, bench->snapshot);
+    if (!frame)
+        abort();
+    frame_unref(&frame);
+    *time_ms = measure_ms(CLOCK_MONOTONIC) - began_ms;
+    *work_ms = measure_ms(CLOCK_PROCESS_CPUTIME_ID) - worked_ms;
+}
+
 /* Measures drawing the plant's initial view. The camera moves slightly before each frame, because a frame of a still camera
    would only be recoloured. */
 static void measure(struct demo_scene *bench, enum tier tier, enum dress dress, const char *time_name, const char *work_name, int rounds)
@@ -90,15 +102,7 @@ static void measure(struct demo_scene *bench, enum tier tier, enum dress dress, 
     put_on(bench, dress, &view);
     for (int i = -2; i < rounds; i++) {
         view.camera.eye_m[0] += 0.001;
-        double began_ms = measure_ms(CLOCK_MONOTONIC), worked_ms = measure_ms(CLOCK_PROCESS_CPUTIME_ID);
-        struct frame *frame = split_view_draw_now(bench->renderer, &view, bench->snapshot);
-        if (!frame)
-            abort();
-        frame_unref(&frame);
-        if (i < 0)
-            continue;
-        time_ms[i] = measure_ms(CLOCK_MONOTONIC) - began_ms;
-        work_ms[i] = measure_ms(CLOCK_PROCESS_CPUTIME_ID) - worked_ms;
+        measure_frame(bench, &view, &time_ms[i < 0 ? 0 : i], &work_ms[i < 0 ? 0 : i]);
     }
     print_row(time_name, time_ms, rounds, tier == TIER_REFINED ? 300 : 0);
     print_row(work_name, work_ms, rounds, 0);
@@ -129,15 +133,7 @@ static void measure_recolour(struct demo_scene *bench)
     const struct plant_group *group = &bench->plant->groups[view.field.group];
     for (int i = -3; i < MOVING_ROUNDS; i++) { /* the first frames (i < 0) fill caches and are not measured; the others only recolour */
         bench->snapshot->readings[tag].value = group->min + (0.3 + 0.01 * (i + 3)) * (group->max - group->min);
-        double began_ms = measure_ms(CLOCK_MONOTONIC), worked_ms = measure_ms(CLOCK_PROCESS_CPUTIME_ID);
-        struct frame *frame = split_view_draw_now(bench->renderer, &view, bench->snapshot);
-        if (!frame)
-            abort();
-        frame_unref(&frame);
-        if (i < 0)
-            continue;
-        time_ms[i] = measure_ms(CLOCK_MONOTONIC) - began_ms;
-        work_ms[i] = measure_ms(CLOCK_PROCESS_CPUTIME_ID) - worked_ms;
+        measure_frame(bench, &view, &time_ms[i < 0 ? 0 : i], &work_ms[i < 0 ? 0 : i]);
     }
     print_row("recolour_ms", time_ms, MOVING_ROUNDS, 4);
     print_row("recolour_cpu_ms", work_ms, MOVING_ROUNDS, 0);

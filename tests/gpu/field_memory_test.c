@@ -86,23 +86,6 @@ static struct view look_down(void)
     return view;
 }
 
-/* Asserts that every pixel within the plate has one of the two greys of the no-data hatching, and that both greys occur. */
-static void assert_hatched(const struct view *view)
-{
-    struct frame *frame = stand_draw(&stand, view);
-    int light = 0, dark = 0;
-    for (int y = 2; y < SIDE_PX - 2; y++)
-        for (int x = 2; x < SIDE_PX - 2; x++) {
-            const uint8_t *pixel = frame_pixel(frame, x, y);
-            assert_true(is_grey(pixel));
-            light += pixel[0] == colormap_no_data[0][0];
-            dark += pixel[0] == colormap_no_data[1][0];
-        }
-    assert_true(light > SIDE_PX * SIDE_PX / 5 && dark > SIDE_PX * SIDE_PX / 5);
-    assert_true(frame->oldest_age_ns == INT64_MAX);
-    frame_unref(&frame);
-}
-
 TEST_WITH(test_without_memory_there_is_no_data, set_up, tear_down)
 {
     struct view view = look_down();
@@ -113,7 +96,7 @@ TEST_WITH(test_without_memory_there_is_no_data, set_up, tear_down)
             view.field.power = 1 + kind + 0.25 * tier;
             fault = kind;
             uint64_t content = planned_content(stand.renderer, &view, stand.snapshot);
-            assert_hatched(&view);
+            stand_expect_hatched(&view);
             fault = ALL_WELL;
             /* the planned content differs from that of the hatched frame, so the renderer draws the frame again instead of
                reusing it */

@@ -409,6 +409,16 @@ static struct lease follower(const char *node, const struct lease_row *row, int6
     return lease;
 }
 
+/* Returns node a, which leads: it won the lease of an empty database at 1 s. */
+static struct lease leader_a(void)
+{
+    const struct lease_row none = { 0 };
+    struct lease a = follower("a", &none, S);
+    lease_bid(&a);
+    lease_won(&a, S);
+    return a;
+}
+
 TEST(a_follower_waits_for_what_binds_it)
 {
     const struct lease_row free_row = { 0 }, led = { .epoch = 3, .beat = 9, .instance = 5, .leader = "a", .standby = "b" };
@@ -461,10 +471,7 @@ TEST(a_node_knows_when_it_last_heard_from_another_leader)
 
 TEST(a_leader_counts_the_standby_that_the_row_names)
 {
-    const struct lease_row none = { 0 };
-    struct lease a = follower("a", &none, S);
-    lease_bid(&a);
-    lease_won(&a, S);
+    struct lease a = leader_a();
     assert_true(lease_acts(&a, 3 * S - 1));
     assert_false(lease_acts(&a, 3 * S));
     lease_promised(&a, "b", 2 * S);
@@ -489,9 +496,7 @@ TEST(a_leader_counts_the_standby_that_the_row_names)
 TEST(a_given_lease_is_taken_at_once_by_the_node_that_saw_its_leader)
 {
     const struct lease_row none = { 0 };
-    struct lease a = follower("a", &none, S);
-    lease_bid(&a);
-    lease_won(&a, S);
+    struct lease a = leader_a();
     lease_renew(&a, "b");
     lease_renewed(&a, "b", 2 * S);
     struct lease b = follower("b", &a.row, 2 * S), c = follower("c", &a.row, 2 * S);
@@ -546,10 +551,7 @@ TEST(a_node_that_the_leader_refused_does_not_bid)
 
 TEST(in_maintenance_a_leader_promises_itself_and_no_other_may_bid)
 {
-    const struct lease_row none = { 0 };
-    struct lease a = follower("a", &none, S);
-    lease_bid(&a);
-    lease_won(&a, S);
+    struct lease a = leader_a();
     lease_promised(&a, "a", 2 * S);
     /* during maintenance a is its own standby, but the row in the database does not say so yet, so a's promise to itself does
        not count */
@@ -573,10 +575,7 @@ TEST(in_maintenance_a_leader_promises_itself_and_no_other_may_bid)
    basis of that row, so the leader must stop leading. */
 TEST(a_leader_whose_row_is_of_another_epoch_has_lost_it)
 {
-    const struct lease_row none = { 0 };
-    struct lease a = follower("a", &none, S);
-    lease_bid(&a);
-    lease_won(&a, S);
+    struct lease a = leader_a();
     struct lease_row restored = a.row;
     lease_saw(&a, &restored, 2 * S);
     assert_false(a.lost);

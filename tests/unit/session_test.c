@@ -140,6 +140,15 @@ static struct frame_request show(struct session_case *f)
     return request;
 }
 
+/* The client says hello and gets a preview, and after one second a refined picture. */
+static void get_refined(struct session_case *f)
+{
+    greet(f);
+    show(f);
+    f->now_ns += NS_PER_S;
+    assert_true(show(f).view.tier == TIER_REFINED);
+}
+
 /* New readings arrive: takes the session's request, draws and acknowledges the frame. quick: the render thread can recolour the
    refined frame in time; otherwise it draws the preview that the request allows instead. Returns the request. */
 static struct frame_request show_data(struct session_case *f, bool quick)
@@ -548,10 +557,7 @@ CASE(overtaken_pictures_are_not_sent)
 CASE(data_under_a_still_view_is_drawn_once_and_refined)
 {
     struct frame_request request;
-    greet(f);
-    show(f);
-    f->now_ns += NS_PER_S;
-    assert_true(show(f).view.tier == TIER_REFINED);
+    get_refined(f);
     session_on_data(f->session, f->now_ns);
     assert_true(ask(f, &request));
     assert_true(!request.always && request.view.tier == TIER_REFINED && request.view.input_ns == f->now_ns);
@@ -610,10 +616,7 @@ CASE(others_may_move_for_a_while_not_for_ever)
 CASE(data_on_a_loaded_server_is_not_refined_at_once)
 {
     struct frame_request request;
-    greet(f);
-    show(f);
-    f->now_ns += NS_PER_S;
-    assert_true(show(f).view.tier == TIER_REFINED);
+    get_refined(f);
     f->context.overloaded = true;
     request = show_data(f, false);
     assert_true(request.view.tier == TIER_PREVIEW && request.urgency == URGENCY_DATA);
@@ -627,10 +630,7 @@ CASE(data_on_a_loaded_server_is_not_refined_at_once)
 CASE(data_on_a_loaded_server_does_not_put_refinement_off_for_ever)
 {
     int refined = 0;
-    greet(f);
-    show(f);
-    f->now_ns += NS_PER_S;
-    assert_true(show(f).view.tier == TIER_REFINED);
+    get_refined(f);
     f->context.overloaded = true;
     for (int i = 0; i < 20; i++) { /* 10 s */
         f->now_ns += 500 * MS;
@@ -738,10 +738,7 @@ CASE(a_preview_that_comes_after_a_refined_picture_does_not_stay)
 CASE(data_leaves_a_refined_picture_that_is_quick_to_color)
 {
     struct frame_request request;
-    greet(f);
-    show(f);
-    f->now_ns += NS_PER_S;
-    assert_true(show(f).view.tier == TIER_REFINED);
+    get_refined(f);
     f->context.overloaded = true;
     for (int i = 0; i < 120; i++) {
         f->now_ns += 500 * MS;
