@@ -2,12 +2,13 @@
 // Tests the access control of a running daemon: TLS, tokens with roles, every way to send a token, and revocation. Foreign host
 // names and pages of other sites must be refused, also behind a proxy. The page must ask users for a token.
 import assert from 'node:assert/strict';
-import { spawn, spawnSync } from 'node:child_process';
+import { spawn } from 'node:child_process';
 import { chmodSync, copyFileSync, existsSync, readFileSync, unlinkSync, writeFileSync } from 'node:fs';
 import { request } from 'node:https';
 import { connect as connectTls } from 'node:tls';
 import { join } from 'node:path';
 import { test } from 'node:test';
+import { makeCertificate } from './support/certificate.mjs';
 import { encodeFrame, http, PlainClient } from './support/plain_client.mjs';
 import { freePort } from './support/ports.mjs';
 import { setUp } from './support/set_up.mjs';
@@ -21,13 +22,6 @@ let plant, tokensFile, tokens;
 const token = (...args) => runProgram('plantcast', ['token', ...args]);
 const path = (name) => join(plant.folder, name);
 
-function makeCertificate(name, subject) {
-    const { status, stderr } = spawnSync('openssl', ['req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:prime256v1', '-nodes',
-        '-keyout', path(`${name}.key`), '-out', path(`${name}.pem`), '-days', '30', '-subj', `/CN=${subject}`,
-        '-addext', `subjectAltName=DNS:${subject},DNS:localhost,IP:127.0.0.1`]);
-    assert.equal(status, 0, String(stderr));
-}
-
 function makeTokens() {
     const made = {};
     for (const role of ['viewer', 'operator', 'engineer'])
@@ -40,8 +34,8 @@ setUp(skip, async (own) => {
     assert.equal(plant.prepare().code, 0);
     tokensFile = path('tokens');
     tokens = makeTokens();
-    makeCertificate('first', 'plant.example');
-    makeCertificate('second', 'other.example');
+    makeCertificate(plant.folder, 'first', ['plant.example', 'localhost', '127.0.0.1']);
+    makeCertificate(plant.folder, 'second', ['other.example', 'localhost', '127.0.0.1']);
 });
 
 // Starts a daemon with --behind-proxy: it grants connections from loopback no rights, as if it listened on an address that

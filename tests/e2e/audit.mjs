@@ -7,6 +7,7 @@ import { existsSync, mkdirSync, readdirSync, readFileSync, rmSync, statSync, wri
 import { createServer } from 'node:tls';
 import { join } from 'node:path';
 import { after, test } from 'node:test';
+import { makeCertificate } from './support/certificate.mjs';
 import { http, PlainClient } from './support/plain_client.mjs';
 import { freePort } from './support/ports.mjs';
 import { promise } from './support/promise.mjs';
@@ -103,9 +104,7 @@ setUp(skip, async () => {
     tokens = {};
     for (const role of ['viewer', 'operator', 'engineer'])
         tokens[role] = runProgram('plantcast', ['token', 'add', path('tokens'), '--role', role, '--name', `${role}-1`]).out.trim();
-    assert.equal(spawnSync('openssl', ['req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:prime256v1', '-nodes', '-keyout',
-        path('log.key'), '-out', path('log.pem'), '-days', '30', '-subj', '/CN=localhost', '-addext',
-        'subjectAltName=DNS:localhost']).status, 0);
+    makeCertificate(plant.folder, 'log', ['localhost']);
 });
 after(async () => {
     await syslog?.close();

@@ -2,11 +2,12 @@
 // The command line as a client of the daemon: many commands at once over https, and through a proxy that serves the daemon
 // below a path.
 import assert from 'node:assert/strict';
-import { spawn, spawnSync } from 'node:child_process';
+import { spawn } from 'node:child_process';
 import { appendFileSync, copyFileSync, existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { connect, createServer } from 'node:net';
 import { join } from 'node:path';
 import { after, afterEach, test } from 'node:test';
+import { makeCertificate } from './support/certificate.mjs';
 import { PlainClient } from './support/plain_client.mjs';
 import { setUp } from './support/set_up.mjs';
 import { BIN, notBuilt, TinyPlant } from './support/tiny_plant.mjs';
@@ -46,10 +47,7 @@ setUp(skip, async () => {
     plant = await TinyPlant.create();
     assert.equal(plant.prepare().code, 0);
     cert = join(plant.folder, 'cert.pem');
-    const made = spawnSync('openssl', ['req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:prime256v1', '-nodes', '-days', '30',
-        '-keyout', join(plant.folder, 'key.pem'), '-out', cert, '-subj', '/CN=localhost',
-        '-addext', 'subjectAltName=DNS:localhost,IP:127.0.0.1']);
-    assert.equal(made.status, 0, String(made.stderr));
+    makeCertificate(plant.folder, 'cert');
 });
 afterEach(() => plant?.daemon?.stop());
 after(async () => {
@@ -58,7 +56,7 @@ after(async () => {
 });
 
 test(`${SESSIONS * PROBES} connections over https, ${SESSIONS * TOGETHER} at once, all succeed`, { skip, timeout: 300000 }, async () => {
-    await plant.startDaemon('--tls-cert', cert, '--tls-key', join(plant.folder, 'key.pem'));
+    await plant.startDaemon('--tls-cert', cert, '--tls-key', join(plant.folder, 'cert.key'));
     const probe = () => run('probe', `https://localhost:${plant.port}/`, '--ca', cert, '--sessions', String(SESSIONS), '--seconds', '0.2',
         '--motion', 'still', '--size', '64x36');
     for (let i = 0; i < PROBES; i += TOGETHER)
@@ -141,7 +139,7 @@ const film = (url, ...more) => ['clip', url, '-o', join(plant.folder, 'film.mp4'
 test('a subcommand that is its own program also gets the certificates and the token', { skip: noFilms, timeout: 100000 }, async () => {
     const tokens = join(plant.folder, 'tokens'), mine = join(plant.folder, 'mine');
     writeFileSync(mine, (await run('token', 'add', tokens, '--role', 'viewer', '--name', 'films')).out);
-    await plant.startDaemon('--tls-cert', cert, '--tls-key', join(plant.folder, 'key.pem'), '--tokens', tokens);
+    await plant.startDaemon('--tls-cert', cert, '--tls-key', join(plant.folder, 'cert.key'), '--tokens', tokens);
     const url = `https://localhost:${plant.port}/`;
     for (const [more, why] of [[[], /pass the certificate of the daemon/], [['--ca', cert], /HTTP status 401/]]) {
         const { code, err } = await run(...film(url, ...more));

@@ -6,6 +6,7 @@ import { spawnSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
+import { makeCertificate } from './support/certificate.mjs';
 import { Node, Nodes, sleep, until } from './support/nodes.mjs';
 import { PlainClient } from './support/plain_client.mjs';
 import { otherVersion } from './support/other_version.mjs';
@@ -280,9 +281,7 @@ test('each address of a core\'s host name is tried, and each failure is logged o
 test('over TLS, a core with an untrusted certificate is refused by name; a trusted core delivers readings', options, async () => {
     const path = (name) => join(nodes.plant.folder, name);
     for (const name of ['core', 'stranger'])
-        assert.equal(spawnSync('openssl', ['req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:prime256v1', '-nodes', '-keyout',
-            path(`${name}.key`), '-out', path(`${name}.pem`), '-days', '30', '-subj', '/CN=localhost', '-addext',
-            'subjectAltName=DNS:localhost']).status, 0);
+        makeCertificate(nodes.plant.folder, name, ['localhost']);
     const secure = await nodes.core(0, '--history', path('h3'), '--tls-cert', path('core.pem'), '--tls-key', path('core.key'));
     const renderer = (ca, host) => {
         const program = new Program('plantcastd', [nodes.plant.file, '--role', 'render', '--port', '0', '--core-token-file',

@@ -6,10 +6,11 @@ import { spawn, spawnSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
+import { makeCertificate } from './support/certificate.mjs';
 import { PlainClient } from './support/plain_client.mjs';
 import { freePort } from './support/ports.mjs';
 import { promise } from './support/promise.mjs';
-import { HookServer, MailServer, makeCertificate } from './support/receivers.mjs';
+import { HookServer, MailServer } from './support/receivers.mjs';
 import { notBuilt, Program, runProgram, sleep, TinyPlant } from './support/tiny_plant.mjs';
 import { until } from './support/until.mjs';
 
@@ -25,7 +26,7 @@ async function createPlant(notify, extra = 0) {
     plant.keepFresh();
     const text = (readFileSync(tags, 'utf8') + rows.join('')).trim().split('\n');
     writeFileSync(tags, `${[`${text[0]},H,HH`, ...text.slice(1).map((row) => `${row},50,60`)].join('\n')}\n`);
-    makeCertificate(plant.folder);
+    makeCertificate(plant.folder, 'mail');
     writeFileSync(join(plant.folder, 'password'), 'öpen sesame\n', { mode: 0o600 });
     writeFileSync(plant.file, `${readFileSync(plant.file, 'utf8').replace('E-101, model', 'E-101, area: Tank farm, model')}${notify}`);
     const { code, err } = plant.prepare();
@@ -279,7 +280,7 @@ test('--test-notify sends a marked message to every recipient and states which s
     };
     try {
         assert.match((await ask()).join(' '), /^1 plantcastd: .*plant\.yaml: the plant file has no `notify`/);
-        makeCertificate(plant.folder);
+        makeCertificate(plant.folder, 'mail');
         const mail = new MailServer(plant.folder);
         await Promise.all([mail.listen(), hook.listen(), redirecting.listen()]);
         const closed = await freePort();

@@ -2,7 +2,6 @@
 // A client that comes through a proxy unknown to the daemon has no rights, however the daemon listens, and the log says who was
 // admitted or refused.
 import assert from 'node:assert/strict';
-import { spawnSync } from 'node:child_process';
 import { appendFileSync, readFileSync, writeFileSync } from 'node:fs';
 import http from 'node:http';
 import https from 'node:https';
@@ -10,6 +9,7 @@ import { connect } from 'node:net';
 import { connect as connectTls } from 'node:tls';
 import { join } from 'node:path';
 import { test } from 'node:test';
+import { makeCertificate } from './support/certificate.mjs';
 import { encodeFrame, PlainClient } from './support/plain_client.mjs';
 import { setUp } from './support/set_up.mjs';
 import { notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
@@ -38,11 +38,8 @@ setUp(skip, async (own) => {
         const added = runProgram('plantcast', ['token', 'add', tokensFile, '--role', role, '--name', `${role}-1`, ...more]);
         tokens[role] = added.out.trim();
     }
-    const key = join(plant.folder, 'key.pem'), cert = join(plant.folder, 'cert.pem');
-    assert.equal(spawnSync('openssl', ['req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:prime256v1', '-nodes',
-        '-keyout', key, '-out', cert, '-days', '30', '-subj', '/CN=plant.example',
-        '-addext', 'subjectAltName=DNS:plant.example']).status, 0);
-    tls = ['--tls-cert', cert, '--tls-key', key];
+    makeCertificate(plant.folder, 'cert', ['plant.example']);
+    tls = ['--tls-cert', join(plant.folder, 'cert.pem'), '--tls-key', join(plant.folder, 'cert.key')];
 });
 
 async function serve(...args) {

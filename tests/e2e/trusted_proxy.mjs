@@ -2,12 +2,13 @@
 // HAProxy and nginx with the shipped configuration, as proxies on another host (--trusted-proxy): limits, lock-out, log and
 // audit trail use the client's address, and forged headers change nothing.
 import assert from 'node:assert/strict';
-import { spawn, spawnSync } from 'node:child_process';
+import { spawn } from 'node:child_process';
 import { existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { request } from 'node:https';
 import { networkInterfaces } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
+import { makeCertificate } from './support/certificate.mjs';
 import { Haproxy, missingHaproxy } from './support/haproxy.mjs';
 import { linesOf } from './support/lines.mjs';
 import { Nodes, until } from './support/nodes.mjs';
@@ -23,7 +24,7 @@ const SESSIONS = 80, CLIENTS = 20, WRONG = 'x'.repeat(43);
 let nodes, core, renderers, proxy, other;
 
 const path = (name) => join(nodes.plant.folder, name);
-const served = (name) => ['--listen', '0.0.0.0', '--tls-cert', path('cert.pem'), '--tls-key', path('key.pem'), '--host', 'plant.example',
+const served = (name) => ['--listen', '0.0.0.0', '--tls-cert', path('cert.pem'), '--tls-key', path('cert.key'), '--host', 'plant.example',
     '--audit', path(`${name}.audit`)];
 // Returns the complete lines of a daemon's audit trail.
 const audited = (name) => linesOf(path(`${name}.audit`)).map((line) => JSON.parse(line));
@@ -54,10 +55,7 @@ async function start(name) {
 setUp(options.skip, async (own) => {
     nodes = own(await Nodes.create());
     nodes.trustsLocal = false;
-    const made = spawnSync('openssl', ['req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:prime256v1', '-nodes', '-days', '2',
-        '-keyout', path('key.pem'), '-out', path('cert.pem'), '-subj', '/CN=plant.example',
-        '-addext', `subjectAltName=DNS:plant.example,DNS:localhost,IP:127.0.0.1,IP:${HOST}`]);
-    assert.equal(made.status, 0);
+    makeCertificate(nodes.plant.folder, 'cert', ['plant.example', 'localhost', '127.0.0.1', HOST]);
     core = await nodes.core(0, '--trusted-proxy', HOST, ...served('core'));
     Object.defineProperty(core, 'url', { value: `wss://127.0.0.1:${core.port}` });
     renderers = [await start('r1'), await start('r2')];
@@ -136,7 +134,7 @@ test('through nginx on another host, with the shipped configuration, the core se
         const port = await freePort(), client = '127.0.0.60';
         const shipped = readFileSync('deploy/proxy/nginx.conf', 'utf8').replace('listen 443 ssl', `listen 127.0.0.1:${port} ssl`)
             .replace('http://127.0.0.1:8080', `https://${HOST}:${core.port}`).replace('/etc/ssl/plantcast/fullchain.pem', path('cert.pem'))
-            .replace('/etc/ssl/plantcast/privkey.pem', path('key.pem'));
+            .replace('/etc/ssl/plantcast/privkey.pem', path('cert.key'));
         const temporary = ['client_body', 'proxy', 'fastcgi', 'uwsgi', 'scgi'].map((name) => `${name}_temp_path ${path(name)};`).join('\n');
         writeFileSync(path('nginx.conf'), `daemon off;\nmaster_process off;\npid ${path('nginx.pid')};\nerror_log stderr;\nevents {}\n` +
             `http {\naccess_log off;\n${temporary}\n${shipped}\n}\n`);

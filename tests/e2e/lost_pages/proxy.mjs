@@ -9,8 +9,8 @@ import { connect } from 'node:net';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { DESKTOP, openPage, PHONE, shoot, waitForPicture, withPage } from '../support/browser.mjs';
+import { makeCertificate } from '../support/certificate.mjs';
 import { freePort } from '../support/ports.mjs';
-import { makeCertificate } from '../support/receivers.mjs';
 import { setUp } from '../support/set_up.mjs';
 import { notBuilt, Program, runProgram, TinyPlant } from '../support/tiny_plant.mjs';
 import { until } from '../support/until.mjs';
@@ -142,7 +142,7 @@ for (const [name, answer, headers, words] of OTHERS)
     });
 
 test('plantcast ready fails where /stream does, over http and https, and names the proxy that blocks WebSockets', options, async () => {
-    makeCertificate(plant.folder);
+    makeCertificate(plant.folder, 'mail');
     const secure = { key: readFileSync(join(plant.folder, 'mail.key')), cert: readFileSync(join(plant.folder, 'mail.pem')) };
     const ready = async (proxy) => { // Runs `plantcast ready` without blocking this process, which also runs the proxy.
         const program = new Program('plantcast', ['ready', proxy.url, '--ca', join(plant.folder, 'mail.pem')]);

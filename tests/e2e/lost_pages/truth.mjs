@@ -2,12 +2,12 @@
 // Anything not current, not measured or not from this version is marked: simulated data, a page after sleep, a page of another
 // version; also on a wall, legibly from afar.
 import assert from 'node:assert/strict';
-import { spawnSync } from 'node:child_process';
 import { createHash, X509Certificate } from 'node:crypto';
 import { appendFileSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { settle, shoot, TABLET, waitForHealth, waitForPicture, withPage } from '../support/browser.mjs';
+import { makeCertificate } from '../support/certificate.mjs';
 import { Relay, relayMissing } from '../support/relay.mjs';
 import { setUp } from '../support/set_up.mjs';
 import { sweep } from '../support/sweep.mjs';
@@ -312,11 +312,8 @@ test('the page can be installed: a manifest with all its icons; no service worke
 // Makes a self-signed certificate, and flags that make Chromium trust it: service workers are refused on pages whose
 // certificate errors are merely ignored.
 function certify(folder) {
-    const [key, cert] = ['key.pem', 'cert.pem'].map((name) => join(folder, name));
-    const { status, stderr } = spawnSync('openssl', ['req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:prime256v1', '-nodes',
-        '-keyout', key, '-out', cert, '-days', '2', '-subj', '/CN=127.0.0.1', '-addext', 'subjectAltName=IP:127.0.0.1'],
-    { encoding: 'utf8' });
-    assert.equal(status, 0, stderr);
+    makeCertificate(folder, 'cert', ['127.0.0.1']);
+    const [key, cert] = ['cert.key', 'cert.pem'].map((name) => join(folder, name));
     const spki = new X509Certificate(readFileSync(cert)).publicKey.export({ type: 'spki', format: 'der' });
     const hash = createHash('sha256').update(spki).digest('base64');
     return { daemon: ['--tls-cert', cert, '--tls-key', key], browser: [`--ignore-certificate-errors-spki-list=${hash}`] };

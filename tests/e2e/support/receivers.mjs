@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Receivers of alarm notifications: a mail server with TLS and an HTTP server, on loopback, which can hang, refuse and
 // disappear.
-import { spawnSync } from 'node:child_process';
 import { once } from 'node:events';
 import { readFileSync } from 'node:fs';
 import { createServer as createHttpServer } from 'node:http';
@@ -9,15 +8,6 @@ import { createServer } from 'node:net';
 import { join } from 'node:path';
 import { createSecureContext, TLSSocket } from 'node:tls';
 import { freePort } from './ports.mjs';
-
-// Makes FOLDER/mail.pem and .key for localhost; the .pem is its own authority.
-export function makeCertificate(folder, name = 'mail') {
-    const { status, stderr } = spawnSync('openssl', ['req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:prime256v1', '-nodes',
-        '-keyout', join(folder, `${name}.key`), '-out', join(folder, `${name}.pem`), '-days', '30', '-subj', '/CN=localhost',
-        '-addext', 'subjectAltName=DNS:localhost,IP:127.0.0.1']);
-    if (status !== 0)
-        throw new Error(String(stderr));
-}
 
 // A mail server that implements only the part of RFC 5321 that one message needs. mode: 'take', 'hang' (never answers),
 // 'refuse' (550 to every recipient), 'busy' (451). starttls true: TLS starts on request, and no mail is accepted before; false:
