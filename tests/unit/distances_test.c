@@ -58,9 +58,8 @@ static void check(struct prep_case *c, const char *tag, const double sensor[2], 
     assert_true(worst_straight_m < 0.002);
 }
 
-TEST_WITH(round_a_cylinder, prep_case_set_up, prep_case_tear_down)
+TEST_ON(struct prep_case *c, round_a_cylinder, prep_case_set_up, prep_case_tear_down)
 {
-    struct prep_case *c = *state;
     struct cad_random random;
     cad_random_start(&random);
     size_t vertices = write_cylinder(c, &random);

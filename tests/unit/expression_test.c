@@ -129,9 +129,8 @@ static void write_one(struct store *store, int tag, double value, uint32_t quali
     store_write(store, &(struct sample){ tag, value, quality }, 1, now_ns, now_ns + 1000 * S);
 }
 
-TEST_WITH(quality_and_age_are_carried_through, plant_case_set_up, plant_case_tear_down)
+TEST_ON(struct plant_case *c, quality_and_age_are_carried_through, plant_case_set_up, plant_case_tear_down)
 {
-    struct plant_case *c = *state;
     plant_case_load(c, yaml, "Tag Name,Address,Stale s\nmean,\"=mean([d],[b])\",\na,40001,20\nb,40002,60\nd,= [a] - [b],\n");
     plant_case_assert_loaded(c, 0);
     const struct plant *plant = c->plant;
@@ -176,9 +175,8 @@ TEST_WITH(quality_and_age_are_carried_through, plant_case_set_up, plant_case_tea
 
 /* Inputs are dated by their devices. A late sample, which is older than the newest input, must nevertheless change the result.
    */
-TEST_WITH(late_inputs_change_the_result, plant_case_set_up, plant_case_tear_down)
+TEST_ON(struct plant_case *c, late_inputs_change_the_result, plant_case_set_up, plant_case_tear_down)
 {
-    struct plant_case *c = *state;
     plant_case_load(c, yaml, "Tag Name,Address,Stale s\na,40001,60\nb,40002,60\nd,= [a] - [b],\n");
     plant_case_assert_loaded(c, 0);
     struct store *store = test_store(c->plant);
@@ -212,9 +210,8 @@ TEST_WITH(late_inputs_change_the_result, plant_case_set_up, plant_case_tear_down
 
 /* The result of a derived tag is compared with the tag's measuring range, which the tag list states in the unit of its row: 212
    °F are 100 °C and 373.15 K. Results beyond the range are Uncertain. */
-TEST_WITH(results_beyond_the_range_are_uncertain, plant_case_set_up, plant_case_tear_down)
+TEST_ON(struct plant_case *c, results_beyond_the_range_are_uncertain, plant_case_set_up, plant_case_tear_down)
 {
-    struct plant_case *c = *state;
     plant_case_load(c, yaml,
                     "Tag Name,Address,Stale s,Group,Asset,X,Y,Z,Eng Units,Scaled Low,Scaled High\n"
                     "a,40001,60,,,,,,,,\nd,= [a] * 2,,g,A,0,0,0,°F,32,212\n");
@@ -235,9 +232,8 @@ TEST_WITH(results_beyond_the_range_are_uncertain, plant_case_set_up, plant_case_
     derived_destroy(&derived);
 }
 
-TEST_WITH(rows_are_checked, plant_case_set_up, plant_case_tear_down)
+TEST_ON(struct plant_case *c, rows_are_checked, plant_case_set_up, plant_case_tear_down)
 {
-    struct plant_case *c = *state;
     plant_case_load(c, yaml,
                     "Tag Name,Address,Source,Scaling\n"
                     "a,= [b] + 1,,\nb,= [c],,\nc,=[a]*2,,\nd,=[e],,\nf,=1+,,\ng,=2,plc,\nh,=3,,Linear\ni,=[i],,\n");

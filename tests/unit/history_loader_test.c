@@ -89,9 +89,8 @@ static struct reading read_at(struct history_loader_setup *s, int64_t at_us)
     return reading;
 }
 
-TEST_WITH(test_an_instant_is_as_it_was, set_up, tear_down)
+TEST_ON(struct history_loader_setup *s, test_an_instant_is_as_it_was, set_up, tear_down)
 {
-    struct history_loader_setup *s = *state;
     struct reading middle = read_at(s, BEGIN + 20500000), gap = read_at(s, BEGIN + 55 * US_PER_S), before = read_at(s, BEGIN - 1);
     assert_true(middle.quality == QUALITY_GOOD && fabs(middle.value - 20.5) < 1e-9);
     assert_true(gap.quality == QUALITY_BAD_COMMUNICATION_ERROR && gap.age_ns == 4 * NS_PER_S);
@@ -100,9 +99,8 @@ TEST_WITH(test_an_instant_is_as_it_was, set_up, tear_down)
     assert_true(history_loader_first_us(s->loader) == BEGIN);
 }
 
-TEST_WITH(test_only_the_newest_wish_of_a_client_counts, set_up, tear_down)
+TEST_ON(struct history_loader_setup *s, test_only_the_newest_wish_of_a_client_counts, set_up, tear_down)
 {
-    struct history_loader_setup *s = *state;
     enum { WISHES = 2000 };
     for (int i = 1; i <= WISHES; i++)
         history_loader_ask(s->loader, 7, BEGIN + i);

@@ -75,9 +75,8 @@ static void end(struct set_of *s)
 
 TEST_FIXTURE(struct set_of, begin, end)
 
-TEST_WITH(levels_grow_coarser, set_up, tear_down)
+TEST_ON(const struct set_of *s, levels_grow_coarser, set_up, tear_down)
 {
-    const struct set_of *s = *state;
     assert_true(s->levels.count >= 4);
     assert_memory_equal(s->levels.at[0].indices, s->g.indices, s->g.index_count * sizeof(uint32_t));
     assert_float_equal(s->levels.at[0].error_m, 0, 0);
@@ -93,9 +92,8 @@ TEST_WITH(levels_grow_coarser, set_up, tear_down)
 
 /* The error of each level is 1.4 times that of the next finer one, or 1.3 times 1.3 if the level between was left out because
    it would save hardly any triangles. */
-TEST_WITH(levels_lie_close, set_up, tear_down)
+TEST_ON(const struct set_of *s, levels_lie_close, set_up, tear_down)
 {
-    const struct set_of *s = *state;
     const double size_m = 2 * (MAJOR_M + MINOR_M) * sqrt(2);
     size_t pairs = 0;
     for (size_t l = 2; l < s->levels.count; l++) {
@@ -108,9 +106,8 @@ TEST_WITH(levels_lie_close, set_up, tear_down)
     assert_true(pairs >= 6);
 }
 
-TEST_WITH(levels_are_nested, set_up, tear_down)
+TEST_ON(const struct set_of *s, levels_are_nested, set_up, tear_down)
 {
-    const struct set_of *s = *state;
     char *used = test_memory(mem_array(s->g.vertex_count, 1));
     for (size_t l = 0; l + 1 < s->levels.count; l++) {
         memset(used, 0, s->g.vertex_count);
@@ -122,9 +119,8 @@ TEST_WITH(levels_are_nested, set_up, tear_down)
 }
 
 /* In each level every edge belongs to two triangles, which traverse it in opposite directions: the torus is still closed. */
-TEST_WITH(closed_stays_closed, set_up, tear_down)
+TEST_ON(const struct set_of *s, closed_stays_closed, set_up, tear_down)
 {
-    const struct set_of *s = *state;
     for (size_t l = 0; l < s->levels.count; l++) {
         const struct level *level = &s->levels.at[l];
         struct edge_table edges;
@@ -147,9 +143,8 @@ TEST_WITH(closed_stays_closed, set_up, tear_down)
 }
 
 /* The torus's materials meet in two planes through its axis, and in each level their border must still lie there. */
-TEST_WITH(materials_keep_their_border, set_up, tear_down)
+TEST_ON(const struct set_of *s, materials_keep_their_border, set_up, tear_down)
 {
-    const struct set_of *s = *state;
     for (size_t l = 0; l < s->levels.count; l++) {
         const struct level *level = &s->levels.at[l];
         assert_int_equal(level->primitive_count, 2);
@@ -208,9 +203,8 @@ static double stray(const struct set_of *s, const struct level *from, const stru
     return most;
 }
 
-TEST_WITH(error_is_a_bound, set_up, tear_down)
+TEST_ON(const struct set_of *s, error_is_a_bound, set_up, tear_down)
 {
-    const struct set_of *s = *state;
     uint32_t seed = 7;
     for (size_t l = 1; l < s->levels.count; l++) {
         double error_m = (double)s->levels.at[l].error_m;
@@ -235,9 +229,8 @@ static void add_lone(struct geometry *g)
     }
 }
 
-TEST_WITH(a_level_is_a_prefix, set_up, tear_down)
+TEST_ON(struct set_of *s, a_level_is_a_prefix, set_up, tear_down)
 {
-    struct set_of *s = *state;
     struct asset_level file[LEVELS_MAX];
     uint32_t *new_of, first_added = s->g.vertex_count - 5, count = s->g.vertex_count, primitives = 0;
     float(*before)[3] = mem_array(count, sizeof(*before));

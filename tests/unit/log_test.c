@@ -65,9 +65,8 @@ static char *written(enum log_format format, const char *socket_path, enum log_l
     return text;
 }
 
-TEST_WITH(an_entry_of_the_journal_has_its_priority_plant_and_message_id, set_up, tear_down)
+TEST_ON(const struct socket_place *place, an_entry_of_the_journal_has_its_priority_plant_and_message_id, set_up, tear_down)
 {
-    const struct socket_place *place = *state;
     char got[2048], want[2048];
     char *text = written(LOG_JOURNAL, place->path, LOG_ERROR, EVENT_RELOAD_REFUSED, "it is wrong");
     assert_string_equal(text, "");
@@ -79,9 +78,8 @@ TEST_WITH(an_entry_of_the_journal_has_its_priority_plant_and_message_id, set_up,
     free(text);
 }
 
-TEST_WITH(a_message_of_two_lines_is_one_entry, set_up, tear_down)
+TEST_ON(const struct socket_place *place, a_message_of_two_lines_is_one_entry, set_up, tear_down)
 {
-    const struct socket_place *place = *state;
     char got[2048];
     static const char want[] = "MESSAGE\n\3\0\0\0\0\0\0\0a\nb\nPRIORITY=6\n";
     char *text = written(LOG_JOURNAL, place->path, LOG_INFO, EVENT_NONE, "a\nb");
@@ -126,9 +124,8 @@ TEST(every_event_has_a_name_and_an_id_of_its_own)
     }
 }
 
-TEST_WITH(the_journal_is_known_by_its_stream, set_up, tear_down)
+TEST_ON(const struct socket_place *place, the_journal_is_known_by_its_stream, set_up, tear_down)
 {
-    const struct socket_place *place = *state;
     struct stat st;
     char stream[64];
     assert_int_equal(fstat(place->fd, &st), 0);
@@ -140,9 +137,8 @@ TEST_WITH(the_journal_is_known_by_its_stream, set_up, tear_down)
     assert_false(service_is_journal(place->fd));
 }
 
-TEST_WITH(the_manager_is_told_and_asked_for_patience, set_up, tear_down)
+TEST_ON(const struct socket_place *place, the_manager_is_told_and_asked_for_patience, set_up, tear_down)
 {
-    const struct socket_place *place = *state;
     char got[256];
     assert_false(service_notify("READY=1"));
     assert_null(service_patience_begin("reading", 600));

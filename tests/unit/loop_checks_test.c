@@ -174,9 +174,8 @@ TEST_WITH(test_the_folder_is_made_where_nobody_has_yet, set_up, tear_down)
     assert_int_equal(loop_checks_of(f->loop_checks, 0)->state, LOOP_CHECK_PASSED);
 }
 
-TEST_WITH(test_all_tags_with_a_source_are_told, set_up, tear_down)
+TEST_ON(struct loop_checks_fixture *f, test_all_tags_with_a_source_are_told, set_up, tear_down)
 {
-    struct loop_checks_fixture *f = *state;
     struct text *text = test_text();
     assert_int_equal(loop_checks_add(f->loop_checks, 0, &passed), REFUSAL_NONE);
     loop_checks_print(f->loop_checks, text);

@@ -261,9 +261,8 @@ static void assert_open_at_ends(const struct asset_view *view, const char *node)
     fail_msg("%s is not there", node);
 }
 
-TEST_WITH(splitting_opens_nothing, gltf_case_set_up, gltf_case_tear_down)
+TEST_ON(struct gltf_case *c, splitting_opens_nothing, gltf_case_set_up, gltf_case_tear_down)
 {
-    struct gltf_case *c = *state;
     struct diag diag = { 0 };
     if (access(DEMO ".prepared/manifest.json", R_OK) != 0)
         skip();

@@ -76,9 +76,8 @@ static int put(const struct plant_import_fixture *f, const char *name, const cha
     return 0;
 }
 
-TEST_WITH(test_uploads, set_up, tear_down)
+TEST_ON(const struct plant_import_fixture *f, test_uploads, set_up, tear_down)
 {
-    const struct plant_import_fixture *f = *state;
     struct export_list list = { 0 };
     assert_int_equal(put(f, "b.csv", "1", true), 0);
     assert_int_equal(put(f, "a.rvm", "12", true), 0);
@@ -125,9 +124,8 @@ static void check_told(const struct plant_import_fixture *f, const char *phase, 
         assert_true(json_is_null(json_object_get(object, "failed")));
 }
 
-TEST_WITH(test_orders, set_up, tear_down)
+TEST_ON(struct plant_import_fixture *f, test_orders, set_up, tear_down)
 {
-    struct plant_import_fixture *f = *state;
     struct import_order order = { .models = true, .units = "mm", .up = "z" }, taken;
     assert_true(import_order_good(&order));
     assert_false(import_order_good(&(struct import_order){ .units = "km" }));
@@ -165,9 +163,8 @@ static const char *units_told(const struct plant_import_fixture *f, char out[8])
     return out;
 }
 
-TEST_WITH(test_units_in_force_are_told_also_after_a_restart, set_up, tear_down)
+TEST_ON(struct plant_import_fixture *f, test_units_in_force_are_told_also_after_a_restart, set_up, tear_down)
 {
-    struct plant_import_fixture *f = *state;
     char is[8];
     assert_string_equal(units_told(f, is), "/");
     assert_true(plant_import_order(f->import, &(struct import_order){ .models = true, .units = "mm", .up = "z" }));

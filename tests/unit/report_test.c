@@ -50,9 +50,8 @@ static int set_up(void **state)
     return 0;
 }
 
-TEST_WITH(numbers_are_those_of_the_model, set_up, prep_case_tear_down)
+TEST_ON(struct prep_case *c, numbers_are_those_of_the_model, set_up, prep_case_tear_down)
 {
-    struct prep_case *c = *state;
     static const struct {
         const char *path;
         double least, most;
@@ -119,9 +118,8 @@ TEST_WITH(numbers_are_those_of_the_model, set_up, prep_case_tear_down)
     assert_true(json_is_null(json_object_get(json_array_get(json_object_get(report, "assets"), 3), "surface")));
 }
 
-TEST_WITH(what_is_wrong_comes_first, set_up, prep_case_tear_down)
+TEST_ON(struct prep_case *c, what_is_wrong_comes_first, set_up, prep_case_tear_down)
 {
-    struct prep_case *c = *state;
     prep_case_expect(c, "$PLANT --report json", 0);
     json_t *report = prep_case_json(&c->out);
     const json_t *look_at = json_object_get(report, "look_at");

@@ -109,9 +109,8 @@ TEST_WITH(test_shares_are_of_the_area, set_up, tear_down)
     assert_true(find(*state, INFINITY, 0, (uint8_t[SENSORS]){ 0 }).lost_share == 1);
 }
 
-TEST_WITH(test_a_sensor_that_is_tried_out_counts, set_up, tear_down)
+TEST_ON(struct toy *toy, test_a_sensor_that_is_tried_out_counts, set_up, tear_down)
 {
-    struct toy *toy = *state;
     struct trial trial = { .id = 1, .count = 1, .sensors = { { .tag = 2, .asset = 0, .surface_m = { 0, 4, 0 }, .number = 1 } } };
     struct sensor_coverage_query order = {
         .scene = &toy->scene, .trial = &trial, .mode = DISTANCE_EUCLIDEAN, .reach_m = INFINITY, .good = (uint8_t[SENSORS]){ 1, 1, 1 }
