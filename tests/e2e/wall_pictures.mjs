@@ -9,6 +9,7 @@ import { openPage, SCREENSHOTS } from './support/browser.mjs';
 import { missing, startPlant } from './support/plant.mjs';
 import { setUp } from './support/set_up.mjs';
 import { sweep } from './support/sweep.mjs';
+import { becomes } from './support/until.mjs';
 
 const taken = sweep(true, process.env.PLANTCAST_SHOTS === '1'), why = missing();
 const options = { skip: why ?? false, timeout: 600000 };
@@ -119,6 +120,60 @@ for (const wall of ['overview', 'six']) {
         });
     }
 }
+
+// Both displays of the demo plant's own wall show few, several and all alarms of the plant, in a long run for ten minutes each.
+const HELD_MS = sweep(600000, 0), HEAP_MB = 10; // HEAP_MB: largest allowed growth of a display's heap
+test('the displays of the demo plant show two, ten and all alarms, with nothing cut off and no growing heap',
+    { ...options, timeout: options.timeout + 3 * HELD_MS }, async (t) => {
+    const own = await startPlant('alarms: local\n'), opened = [];
+    try {
+        const { tags } = await (await fetch(`${own.url}api/v1/plant`)).json();
+        await own.freeze(tags.map(({ name }) => name));
+        const limited = tags.filter(({ limits }) => Number.isFinite(limits.H)), counts = [2, 10, limited.length];
+        for (const { name, limits: { L, H } } of limited)
+            await own.ask(`set ${name} ${((L ?? 0) + H) / 2}`);
+        for (const display of [1, 2])
+            opened.push(await openPage(`${own.url}wall.html?wall=control-room&display=${display}`,
+                { viewport: { width: 1920, height: 1080 }, args: ['--js-flags=--expose-gc', '--enable-precise-memory-info'] }));
+        const heapMb = (page) => page.evaluate(() => {
+            globalThis.gc();
+            return performance.memory.usedJSHeapSize / 1e6;
+        });
+        for (const count of counts) {
+            for (const { name, limits: { H } } of limited.slice(0, count))
+                await own.ask(`set ${name} ${H + 0.02 * Math.abs(H) + 0.01}`);
+            for (const { page } of opened) {
+                await page.waitForFunction((many) => globalThis.wall?.session.model?.alarms.counts().active === many, count);
+                await page.locator('.pane.alarms h2', { hasText: `${count} active, ${count} unacknowledged` }).waitFor();
+                await page.waitForFunction(whole, null, { polling: 200 });
+            }
+            const before = await Promise.all(opened.map(({ page }) => heapMb(page)));
+            for (const end = performance.now() + HELD_MS; ;) {
+                for (const [i, { page }] of opened.entries()) {
+                    await becomes(() => page.evaluate(cut), [], `display ${i + 1}, ${count} alarms`);
+                    await becomes(() => page.evaluate(amiss), [], `display ${i + 1}, ${count} alarms`);
+                    assert.deepEqual(await page.evaluate(tiny, { inches: 65, distance_m: 3 }), []);
+                    assert.equal(await page.evaluate(() => globalThis.wall.session.connection.state), 'open');
+                }
+                if (performance.now() > end)
+                    break;
+                await opened[0].page.waitForTimeout(10000);
+            }
+            const grown = (await Promise.all(opened.map(({ page }) => heapMb(page)))).map((mb, i) => mb - before[i]);
+            t.diagnostic(`${count} alarms: heaps grew by ${grown.map((mb) => mb.toFixed(1)).join(' and ')} MB`);
+            assert.ok(grown.every((mb) => mb < HEAP_MB), `${grown}`);
+            for (const [i, { page, errors }] of opened.entries()) {
+                assert.deepEqual(errors, []);
+                if (taken)
+                    await page.screenshot({ path: join(SCREENSHOTS, `wall-${count}-alarms-${i + 1}.png`) });
+            }
+        }
+    } finally {
+        for (const { close } of opened)
+            await close();
+        await own.stop();
+    }
+});
 
 // opens one browser window per display; between the displays lie bezels, which hide a part of the view
 for (const size of SIZES) {
