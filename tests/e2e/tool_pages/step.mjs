@@ -3,7 +3,7 @@
 // the screen shows its point, not where the page's newest camera would show it.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { openPage, settle, shoot, TABLET, waitForPicture, withPage } from '../support/browser.mjs';
+import { arrive, openPage, settle, shoot, TABLET, waitForPicture, withPage } from '../support/browser.mjs';
 import { promise } from '../support/promise.mjs';
 import { Relay, relayMissing } from '../support/relay.mjs';
 import { setUp } from '../support/set_up.mjs';
@@ -307,6 +307,21 @@ async function loseContext(page) {
     await settle(page);
 }
 
+// Returns how far markers lie from their places in warped pictures, in page pixels, and the largest share of colours beyond the box.
+async function faultsOf(page, seen) {
+    const { width, height } = await page.locator('#viewport').boundingBox();
+    const { min, max } = await page.evaluate(() => globalThis.plantcast.session.model.asset('E-101').bounds);
+    const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((n) => [0, 1, 2].map((i) => (n & (1 << i) ? max[i] : min[i])));
+    let off = 0, beyond = 0;
+    for (const { camera, runs, markers: marks } of seen) {
+        const project = projector(camera, width, height), places = corners.map(project);
+        for (const { at, x: left, y: top } of marks)
+            off = Math.max(off, Math.hypot(...project(at).slice(0, 2).map((v, i) => v - [left, top][i])));
+        beyond = Math.max(beyond, partBeyond(runs, places));
+    }
+    return { off, beyond };
+}
+
 const followsHand = (painter, ...script) => async (t) => {
     const slow = await Relay.open(plant.port, { bytesPerS: 4e6, delayMs: 300 });
     const { page, errors, close } = await openPage(`http://127.0.0.1:${slow.port}/?codec=jpeg`, { viewport: { width: 1100, height: 700 } },
@@ -332,16 +347,7 @@ const followsHand = (painter, ...script) => async (t) => {
         }
         await shoot(page, 'warped');
         await page.mouse.up();
-        const seen = await page.evaluate(() => globalThis.warped), { width, height } = await page.locator('#viewport').boundingBox();
-        const { min, max } = await page.evaluate(() => globalThis.plantcast.session.model.asset('E-101').bounds);
-        const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((n) => [0, 1, 2].map((i) => (n & (1 << i) ? max[i] : min[i])));
-        let off = 0, beyond = 0;
-        for (const { camera, runs, markers: marks } of seen) {
-            const project = projector(camera, width, height), places = corners.map(project);
-            for (const { at, x: left, y: top } of marks)
-                off = Math.max(off, Math.hypot(...project(at).slice(0, 2).map((v, i) => v - [left, top][i])));
-            beyond = Math.max(beyond, partBeyond(runs, places));
-        }
+        const seen = await page.evaluate(() => globalThis.warped), { off, beyond } = await faultsOf(page, seen);
         t.diagnostic(`${seen.length} drawings; markers ${off.toFixed(2)} px off, ${(100 * beyond).toFixed(3)} % of the colours beyond`);
         assert.ok(seen.length >= 10, `only ${seen.length} drawings`);
         assert.ok(seen.every(({ isNewest, isAhead }) => isNewest && isAhead),
@@ -374,3 +380,37 @@ const followsHand = (painter, ...script) => async (t) => {
 const name = 'the picture follows the pointer before the server answers, and undrawn areas stay uncoloured';
 test(`${name}, by WebGL`, options, followsHand('GlPainter', asGpu));
 test(`${name}, by the processor`, options, followsHand('CpuPainter'));
+
+test('after the window changes its size, warped pictures are true again', options, async (t) => {
+    const slow = await Relay.open(plant.port, { bytesPerS: 4e6, delayMs: 150 });
+    const { page, errors, close } = await openPage(`http://127.0.0.1:${slow.port}/?codec=jpeg`, { viewport: { width: 900, height: 600 } });
+    try {
+        await look(page);
+        const frame = () => page.evaluate(() => new Promise(requestAnimationFrame));
+        await page.mouse.move(...await middle(page));
+        await page.waitForFunction(() => globalThis.plantcast.viewport.warp);
+        await watchWarped(page);
+        for (const [width, height] of [[980, 500], [900, 700]]) {
+            await page.setViewportSize({ width, height });
+            await arrive(page);
+            await page.waitForFunction(() => globalThis.plantcast.viewport.warp.grids.at(-1)?.parts &&
+                !globalThis.plantcast.viewport.warp.isShown);
+            await page.evaluate(() => { globalThis.warped = []; });
+            const [x, y] = await middle(page);
+            await page.mouse.move(x, y);
+            await page.mouse.down();
+            for (let i = 1; i < 20; i++) {
+                await page.mouse.move(x + 2 * i, y + 8 * Math.sin(i / 5));
+                await frame();
+            }
+            await page.mouse.up();
+            const seen = await page.evaluate(() => globalThis.warped), { off, beyond } = await faultsOf(page, seen);
+            t.diagnostic(`${width}x${height}: ${seen.length} drawings, markers ${off.toFixed(2)} px off`);
+            assert.ok(seen.length > 0 && off <= MARK_PX && beyond <= WARPED_SHARE, JSON.stringify({ off, beyond }));
+        }
+        assert.deepEqual(errors, []);
+    } finally {
+        await close();
+        slow.close();
+    }
+});
