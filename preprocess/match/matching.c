@@ -320,7 +320,8 @@ static void add_group(const struct quantity *quantity, struct text *lines)
     text_add(lines, ", unit: ");
     plant_edit_add_quoted(lines, quantity->unit);
     text_add(lines, ", min: %.6g, max: %.6g } # %zu tags; ", known ? quantity->low : 0, known ? quantity->high : 100, quantity->tags);
-    text_add(lines, known ? "range: the scaled limits of these tags" : "the range is a guess: no tag of the group has scaled limits");
+    text_add(lines, known ? "range: the scaled limits of these tags"
+                          : "the range is a guess: no tag of the group has lowest and highest measurable values (scaled limits)");
     if (quantity->blank > 0)
         text_add(lines, "; %zu tags have no unit", quantity->blank);
     text_add(lines, "\n");

@@ -2,13 +2,13 @@
 /* Cache of the errors measured at edges and triangles ("findings"): KEY.splitting in the folder of prepared files. If few of
  * many sensors have changed since the last run, its findings still hold except near those sensors, and errors are measured
  * again only there. A new or removed sensor with at most the weight x at an edge changes the edge's error by about x times the
- * error. Such changes add up from run to run ("doubt") until the edge is measured again; in total they stay far below the tenth
- * of a colour step that subdivision keeps in reserve (SUBDIV_AIM). With larger doubt, a finding still holds if its error is far
- * from any limit. This is valid for Shepard interpolation if all sensors of a group have the same strength. Assets with a group
- * that uses Algorithm 1 or a reach are not cached: under Algorithm 1 every sensor matters everywhere, and a reach bends the
- * weights at its end. Coarser levels that were dropped are tried again once so many sensors have changed that findings would no
- * longer be used. The file can be deleted at any time; a damaged file counts as absent. Call from one thread only, unless a
- * function says otherwise. */
+ * error. Such changes add up from run to run ("doubt") until the edge is measured again. A finding holds as long as its doubt
+ * is far below the tenth of a colour step that subdivision keeps in reserve (SUBDIV_AIM). With larger doubt, it holds only if
+ * its error is much smaller or larger than the error from which on an edge is split. This is valid for Shepard interpolation
+ * if all sensors of a group have the same strength. Assets with a group that uses Algorithm 1 or a reach are not cached: under
+ * Algorithm 1 every sensor matters everywhere, and a reach bends the weights at its end. Coarser levels that were dropped are
+ * tried again once so many sensors have changed that findings would no longer be used. The file can be deleted at any time; a
+ * damaged file counts as absent. Call from one thread only, unless a function says otherwise. */
 #ifndef PREPROCESS_SUBDIVISION_SUBDIV_CACHE_H
 #define PREPROCESS_SUBDIVISION_SUBDIV_CACHE_H
 #include "base/files/cache_file.h"

@@ -253,7 +253,8 @@ static bool set_flags(const struct update *update, size_t begin, size_t count, c
     return changed;
 }
 
-/* Sums the weighted readings of all sensors at a block of vertices into `values`. Returns true if a flag changed. */
+/* Sums the weighted readings of all sensors at a block of vertices into `values`. Returns true if a
+   vertex's flag (no data, uncertain or no limits) changed. */
 static bool sum_block(const struct update *update, size_t block, size_t begin, size_t count, double *values)
 {
     struct weights *weights = update->state->weights;

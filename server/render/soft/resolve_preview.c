@@ -274,7 +274,7 @@ SOFT_INLINE void evaluate_eight(const struct raster *raster, const struct soft_r
 
 /* --- fields of many sensors, evaluated with sensor lists for squares of pixels ------------------------------------------------- */
 
-struct many { /* pixels within a square of cells that show one field of many sensors */
+struct many { /* the pixels in one square of the frame that show the same field; the field has many sensors */
     const struct raster *raster;
     const struct soft_pixels *pixels;
     const struct soft_rect *rect;

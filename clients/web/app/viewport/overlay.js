@@ -129,7 +129,7 @@ export class Overlay {
     // Thins out the markers of each half of the view where they are dense. Returns those to draw, farthest first.
     thinned() {
         const id = ({ tag, half }) => tag.index * 2 + half, { selected } = this.session.params;
-        // tags that the previous picture's thinning kept, except those that are always drawn
+        // tags whose markers the previous picture drew, without those that it drew only because they are always drawn (`kept`)
         const before = new Set(this.markers.filter(({ kept, held }) => held || !kept).map(id));
         for (const marker of this.all) {
             const { tag, alarm, origin, reading } = marker;
