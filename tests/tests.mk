@@ -27,6 +27,7 @@ test-long: test-deps
 	@PLANTCAST_BIN=$(bin) PLANTCAST_OUT=$(out) LOSSES=20 node --test tests/e2e/wall_losses.mjs
 	@PLANTCAST_BIN=$(bin) PLANTCAST_OUT=$(out) LOSSES=20 node --test tests/e2e/gpu.mjs
 	@PLANTCAST_BIN=$(bin) VIDEO_S=600 node --test --test-name-pattern='every second' tests/e2e/video.mjs
+	@PLANTCAST_BIN=$(bin) PLANTCAST_OUT=$(out) HELD_S=600 node --test --test-name-pattern='two, ten and all' tests/e2e/wall_pictures.mjs
 	@$(MAKE) --no-print-directory validation scale soak
 # Prepares 10 million triangles in 2,000 assets within 8 GB, is killed, and continues. Takes some minutes.
 scale: all $(out)/tests/scale/facility

@@ -229,8 +229,10 @@ test('a standby with another buffer beside its model says so', options, async ()
     await learns(core, isSame);
 });
 
-test('a standby that is refused for its token is named, with the reason', options, async () => {
-    const core = await two.leader(), other = two.other(core), good = two.nodes.standbyFile, ready = async () =>
+test('a standby that is refused for its token is named, with the reason', options, async (t) => {
+    const core = await two.leader(), other = two.other(core), good = two.nodes.standbyFile;
+    t.after(() => { other.standbyFile = good; });
+    const ready = async () =>
         await (await core.node.fetch('/readyz')).text();
     await two.followed(core);
     const unknown = join(two.plant.folder, 'unknown.token');

@@ -55,11 +55,13 @@ function startKiosk(url, { before: starter = [], around = [], env = display.env 
         '--watchdog', String(WATCHDOG_S), 'deploy/systemd/kiosk', url, ...around, CHROMIUM,
         ...FLAGS, `--window-size=${WIDTH},${HEIGHT}`, '--window-position=0,0'];
     const child = spawn(program, args, { stdio: 'pipe', env: { ...env, STATE_DIRECTORY: state, HOME: state } });
-    kiosk = { child, said: '', code: null, pid: () => Number([...kiosk.said.matchAll(/^started: (\d+)$/mg)].at(-1)?.[1]),
-        fed: () => kiosk.said.split('notify: WATCHDOG=1').length - 1 };
+    // the supervisor may still print while the next test runs, when `kiosk` is already another one or null
+    const own = { child, said: '', code: null, pid: () => Number([...own.said.matchAll(/^started: (\d+)$/mg)].at(-1)?.[1]),
+        fed: () => own.said.split('notify: WATCHDOG=1').length - 1 };
     for (const pipe of [child.stdout, child.stderr])
-        pipe.on('data', (text) => { kiosk.said += text; });
-    kiosk.ended = new Promise((done) => child.once('exit', (code) => { kiosk.code = code; done(code); }));
+        pipe.on('data', (text) => { own.said += text; });
+    own.ended = new Promise((done) => child.once('exit', (code) => { own.code = code; done(code); }));
+    kiosk = own;
 }
 
 setUp(why, async () => {

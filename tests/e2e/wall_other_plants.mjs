@@ -9,9 +9,9 @@ import { request } from 'node:https';
 import { join } from 'node:path';
 import { after, test } from 'node:test';
 import { openPage, shoot } from './support/browser.mjs';
+import { makeCertificate } from './support/certificate.mjs';
 import { freePort } from './support/ports.mjs';
 import { promise } from './support/promise.mjs';
-import { makeCertificate } from './support/receivers.mjs';
 import { setUp } from './support/set_up.mjs';
 import { missing, runProgram, sleep, TinyPlant } from './support/tiny_plant.mjs';
 import { becomes } from './support/until.mjs';
@@ -78,7 +78,7 @@ function addToken(file, name, ...more) {
 async function startOther() {
     other = await TinyPlant.create();
     other.keepFresh();
-    makeCertificate(other.folder);
+    makeCertificate(other.folder, 'mail');
     tokens.other = addToken(join(other.folder, 'tokens'), 'wall', '--unattended');
     writeFileSync(other.file, readFileSync(other.file, 'utf8').replace('Two boxes', NAME));
     appendFileSync(other.file, 'views: [{ id: warm, title: Warm, view: "group=temperature" }]\n');

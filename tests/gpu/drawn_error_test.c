@@ -270,8 +270,7 @@ static void expect_exact(const char *name, const struct drawn_error_tally *tally
     assert_int_equal(tally->marked, 0);
     assert_int_equal(tally->flags_off, 0);
     /* The software renderer's surface points are slightly inaccurate. One pixel in a thousand may differ, because with high
-       powers the field changes strongly within a pixel. A GPU's
-       refined picture shows the mean colour of a pixel's samples. */
+       powers the field changes strongly within a pixel. A GPU's refined picture shows the mean colour of a pixel's samples. */
     assert_true(tally->soft > 500 && tally->soft_off <= (rig.gl->software ? 0.001 : 0.005) * tally->soft);
     assert_true(tally->worst_evaluated <= 0.02 * STEP && tally->worst_placed <= 0.25 * STEP);
 }

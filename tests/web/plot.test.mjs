@@ -136,6 +136,7 @@ test('an alarm is a broad line along the curve while it lasts, and a triangle wh
     const alarm = { us: 10e6, endUs: 30e6, priority: 2, value: 60, limit: 50, tag: 'A', kind: 'H' };
     const { plot, named } = callsOf('drawAlarms', { tag: 'A', bucket_us: 0, points: [[0, 50, GOOD]] }, { alarms: [alarm] });
     const pens = named('stroke').filter(({ args }) => args[0] === 'curve');
+    assert.ok(named('rect').length > 0);
     assert.ok(named('rect').every(({ args }) => args.join() === '10,0,20,100'));
     const colours = pens.map(({ strokeStyle }) => strokeStyle), widths = pens.map(({ lineWidth }) => lineWidth);
     assert.deepEqual(colours, [LOOKS.light.edge, '#222222', 'red'], 'edge, priority and curve, one over the other');

@@ -124,7 +124,7 @@ test('titles and current values of the alarm list and the journal are complete, 
             for (const tab of ['alarms', 'journal']) {
                 await page.locator(`#${tab}-tab`).click();
                 await page.locator(`#${tab}-list tr`).first().waitFor();
-                for (const width of [1920, 1600, 1400, 1280, 1200]) {
+                for (const width of [1920, 1600, 1400, 1280, 1260, 1240, 1200]) {
                     await resize(page, { width, height: 900 });
                     const cut = await page.evaluate((name) => [...document.querySelectorAll(`#${name}-table thead th`)].filter((head) => {
                         const title = head.querySelector('button') ?? head;

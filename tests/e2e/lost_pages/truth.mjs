@@ -163,8 +163,9 @@ const samples = (page) => page.evaluate(() => {
         Math.floor((Math.floor(n / 8) + 0.5) * canvas.height / 8), 1, 1).data]);
 });
 
-test('a slow link that stalls: the last picture stays, marked as old, and the view is unchanged', options, async () => {
+test('a slow link that stalls: the last picture stays, marked as old, and the view is unchanged', options, async (t) => {
     const relay = await Relay.open(plant.port, { bytesPerS: 250000, delayMs: 60 });
+    t.after(() => relay.close());
     await withPicture(`http://127.0.0.1:${relay.port}/`, TABLET, async (page) => {
         await waitForHealth(page, 'live');
         await page.evaluate(() => {
@@ -194,12 +195,12 @@ test('a slow link that stalls: the last picture stays, marked as old, and the vi
         assert.deepEqual(await view(), was);
         await page.locator('#banner').waitFor({ state: 'hidden' });
     });
-    relay.close();
 });
 
 test('a link that stalls while the hand moves: the warped picture is marked as old, and the status bar tells how far it lags behind',
-    options, async () => {
+    options, async (t) => {
     const relay = await Relay.open(plant.port, { bytesPerS: 4e6, delayMs: 60 });
+    t.after(() => relay.close());
     await withPicture(`http://127.0.0.1:${relay.port}/?lang=en`, { viewport: { width: 1024, height: 768 } }, async (page) => {
         await waitForHealth(page, 'live');
         await settle(page);
@@ -233,11 +234,11 @@ test('a link that stalls while the hand moves: the warped picture is marked as o
         await settle(page);
         await page.waitForFunction(() => !document.getElementById('latency').parentElement.classList.contains('late'));
     });
-    relay.close();
 });
 
-test('legend and markers belong to the shown picture, however late the requested one arrives', options, async () => {
+test('legend and markers belong to the shown picture, however late the requested one arrives', options, async (t) => {
     const relay = await Relay.open(plant.port, { bytesPerS: 1e8, delayMs: 0 });
+    t.after(() => relay.close());
     await withPicture(`http://127.0.0.1:${relay.port}/`, TABLET, async (page) => {
         await waitForHealth(page, 'live');
         // moves the camera away from its home position: in a split picture the page would fit the home position to the shape of
@@ -270,7 +271,6 @@ test('legend and markers belong to the shown picture, however late the requested
             return [both, then.filter(([name]) => name === 'PI-1').map(([, , half]) => half)];
         }, [['Pressure bar', 'Temperature °C'], [0]]);
     });
-    relay.close();
 });
 
 test('a cached page of another version reloads itself, once', options, async () => {

@@ -3,7 +3,8 @@
 import { after, before } from 'node:test';
 
 // Calls `prepare` before the first test of the current group; skip: the tests are skipped, so nothing is prepared. `prepare` gets
-// own(object), which returns the object. Owned objects are ended in reverse order, also if `prepare` fails.
+// own(object), which returns the object. Owned objects are ended in reverse order, also if `prepare`
+// fails or one of them cannot be ended.
 export function setUp(skip, prepare) {
     const owned = [];
     const own = (object) => {
@@ -15,7 +16,15 @@ export function setUp(skip, prepare) {
             await prepare(own);
     });
     after(async () => {
-        for (const object of owned.reverse())
-            await (object.destroy ?? object.stop ?? object.close).call(object);
+        const errors = [];
+        for (const object of owned.reverse()) {
+            try {
+                await (object.destroy ?? object.stop ?? object.close).call(object);
+            } catch (error) {
+                errors.push(error);
+            }
+        }
+        if (errors.length > 0)
+            throw errors[0];
     });
 }

@@ -406,6 +406,7 @@ test('after the window changes its size, warped pictures are true again', option
             await page.mouse.up();
             const seen = await page.evaluate(() => globalThis.warped), { off, beyond } = await faultsOf(page, seen);
             t.diagnostic(`${width}x${height}: ${seen.length} drawings, markers ${off.toFixed(2)} px off`);
+            assert.ok(seen.some(({ markers }) => markers.length > 0), 'no marker was drawn');
             assert.ok(seen.length > 0 && off <= MARK_PX && beyond <= WARPED_SHARE, JSON.stringify({ off, beyond }));
         }
         assert.deepEqual(errors, []);
