@@ -201,7 +201,7 @@ static int open_to_write(struct database *database, int *version)
 
 const char *database_error_text(int error)
 {
-    return error == -DATABASE_NEWER ? "a newer Plantcast wrote a file: the line before names the file and what to do" : strerror(-error);
+    return error == -DATABASE_NEWER ? "a newer Plantcast wrote a file: an earlier line names the file and what to do" : strerror(-error);
 }
 
 int database_open(struct database *database, bool *renewed)

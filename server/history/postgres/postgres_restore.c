@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "base/files/atomic_file.h"
+#include "base/files/database.h"
 #include "base/mem.h"
 #include "base/text/text.h"
 #include "history/month.h"
@@ -145,7 +146,7 @@ struct tag_there {
 
 static bool fail(char why[POSTGRES_WHY_BYTES], int error)
 {
-    snprintf(why, POSTGRES_WHY_BYTES, "the history files cannot be written: %s", strerror(-error));
+    snprintf(why, POSTGRES_WHY_BYTES, "the history files cannot be written: %s", database_error_text(error));
     return false;
 }
 
