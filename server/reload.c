@@ -139,8 +139,8 @@ static void record(const struct reload *reload, bool good, const json_t *object)
     mem_free(what);
 }
 
-/* Reports the reload's result to the clients that requested it; takes ownership of `object`. A save, an import, and a reload because
-   of the core answer nobody else's request: such requests are carried out, and answered, afterwards. */
+/* Reports the reload's result to the clients that requested it; takes ownership of `object`. Only requests that this reload serves
+   are answered. */
 static void answer(struct reload *reload, bool good, json_t *object)
 {
     struct verdict verdict = { .net = reload->net, .answers = reload->answers, .good = good };
@@ -371,15 +371,13 @@ static bool reload_now(struct reload *reload)
     return good;
 }
 
-/* Reloads the plant as soon as no other program is replacing its files; waits at most WAIT_MS. Returns false like reload_now(). */
-static bool reload_settled(struct reload *reload)
+/* Waits at most WAIT_MS until no other program is replacing the plant's files. Returns false like reload_now(). */
+static bool settle_folder(struct reload *reload)
 {
     struct diag none = { 0 };
-    bool good = false;
     char *folder = plant_folder_of(reload->context->params->plant_path), *why = NULL;
-    if (plant_folder_settle(&(struct plant_folder_params){ .folder = folder, .wait_ms = WAIT_MS }, &why)) {
-        good = reload_now(reload);
-    } else {
+    bool good = plant_folder_settle(&(struct plant_folder_params){ .folder = folder, .wait_ms = WAIT_MS }, &why);
+    if (!good) {
         char *line = mem_printf("the plant's folder %s cannot be locked: %s; try again later", folder, why);
         refuse(reload, &none, line);
         mem_free(line);
@@ -389,10 +387,18 @@ static bool reload_settled(struct reload *reload)
     return good;
 }
 
+/* Reloads the plant as soon as no other program is replacing its files. Returns false like reload_now(). */
+static bool reload_settled(struct reload *reload)
+{
+    return settle_folder(reload) && reload_now(reload);
+}
+
 /* Loads the plant because the core loads it, unless this node lacks the files that the core loads. */
 static void follow_now(struct reload *reload, const struct follow_order *order)
 {
     char own[17];
+    if (!settle_folder(reload))
+        return;
     plant_hash_on_disk((*reload->runtime)->plant, own);
     if (order->loads[0] && strcmp(order->loads, own) != 0) {
         log_info(reload->context->log,
@@ -401,7 +407,7 @@ static void follow_now(struct reload *reload, const struct follow_order *order)
                  order->loads, own);
         return;
     }
-    reload_settled(reload);
+    reload_now(reload);
 }
 
 /* --- saving a tag list ----------------------------------------------------------------------------------------------------- */
@@ -626,7 +632,7 @@ static bool match_now(struct reload *reload, const struct core_match *match)
         reload->expected[0] = 0;
     }
     reload->matching = false;
-    if (is_stopping(reload)) { /* the daemon's end is no cause of a failure */
+    if (why && is_stopping(reload)) { /* the daemon's end is no cause of a failure */
         mem_free(why);
         return true;
     }
@@ -755,7 +761,8 @@ static void say_lead(const struct reload *reload)
                  "evaluates alarms",
                  (double)age_ns / 1e9);
     else
-        log_info(log, "core: this core took the lead, which no other core had: it now polls devices and evaluates alarms");
+        log_info(log, "core: this core took the lead; since its start it has seen no other core lead: it now polls devices and evaluates "
+                      "alarms");
 }
 
 static void lead_now(struct reload *reload)

@@ -41,7 +41,8 @@ void net_on_lead_ended(struct net *net);
 void net_release_historian(struct net *net);
 /* Drops the pointers to the plant's historian and notifier, which the caller is about to destroy before the rest of the plant. */
 void net_release_recording(struct net *net);
-/* Tells this core's renderers that the core begins to load the plant, so that they do the same. */
+/* Tells this core's renderers that the core begins to load the plant, so that they do the same. configuration: hash of the plant
+   file and tag list that the core loads. */
 void net_announce_reload(struct net *net, const char *configuration);
 /* Releases everything that belongs to the plant, which is about to be destroyed. Sessions stay. */
 void net_release_plant(struct net *net);
