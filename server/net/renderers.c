@@ -24,7 +24,6 @@
 #define ACTED "acted_ns" /* JSON key of a queued answer: monotonic time at which the answered action was on disk; removed before sending */
 enum { TICK_US = 200000, MAX_MESSAGE_BYTES = 256 * 1024 /* maximum size of one message */, MAX_ANSWERS = 1024, SEND_TIMEOUT_S = 5 };
 static const int64_t MAX_READINGS_DELAY_NS = 500 * NS_PER_MS, STANDBY_TIMEOUT_NS = 2 * NS_PER_S;
-static const int64_t DENIED_NS = 15 * NS_PER_S; /* nanoseconds for which the refusal of a node that may be the standby is shown */
 
 struct lists_seen {
     uint64_t views, notes, walls, pointed, pairings, links;
@@ -146,49 +145,40 @@ static bool takes_over(const struct renderer_peer *renderer)
     return is_standby(renderer) || (renderer->state == RENDERER_VOTES && !renderer->other_configuration);
 }
 
-/* Returns whether this core has refused a node in the last seconds that may be the standby. A refused node tries again every second or
-   two. */
-static bool has_denied(const struct server_context *server)
+/* Returns the node that this core has just refused and that may be the standby; NULL: none. */
+static const struct denial *find_denied(const struct server_context *server)
 {
-    return server->core.denied.at_ns && clock_mono_ns() - server->core.denied.at_ns < DENIED_NS;
+    return denials_recent(&server->core.denials, clock_mono_ns());
 }
 
-static void note_denied(struct server_context *server, const char *who, const char *why)
-{
-    snprintf(server->core.denied.who, sizeof(server->core.denied.who), "%s", who);
-    snprintf(server->core.denied.why, sizeof(server->core.denied.why), "%.*s", (int)strcspn(why, "\r\n"), why);
-    server->core.denied.at_ns = clock_mono_ns();
-}
-
-void renderers_deny(struct server_context *server, const char *who, const char *why)
+void renderers_deny(struct server_context *server, const char *who, int status, const char *why)
 {
     char more[LOG_PACE_BYTES];
     if (!server->params.keeper || !core_end_leads(server))
         return;
-    note_denied(server, who, why);
-    server->core.denials.first_ns = server->core.denials.longest_ns = 60 * NS_PER_S;
-    if (log_pace_take(&server->core.denials, clock_mono_ns(), more))
-        log_err(server->params.log, "core: the connection of %s to this core is refused: %s%s", who, server->core.denied.why, more);
+    int64_t now_ns = clock_mono_ns();
+    struct denial *node = denials_note(&server->core.denials, who, why, status == 429, now_ns);
+    if (denials_log(node, now_ns, more))
+        log_err(server->params.log, "core: the connection of %s to this core is refused: %s%s", who, node->why, more);
     renderers_describe_standby(server);
 }
 
 const struct standby_texts *renderers_standby_texts(const struct server_context *server)
 {
-#define TEXTS(text)                                                                                                                        \
-    {                                                                                                                                      \
-        "ok; " text, "leads; " text                                                                                                        \
-    }
-    static const struct standby_texts follows = TEXTS("a standby follows"),
-                                      models = TEXTS("a standby follows, but its models differ: the log says why"),
-                                      version = TEXTS("the standby has another version: it gets no data, but can take over"),
-                                      files =
-                                          TEXTS("the standby has another plant file or tag list and cannot take over: the log says why"),
-                                      denied = TEXTS("no standby follows, because this core refuses one: the log says why"),
-                                      none = TEXTS("no standby is connected");
-#undef TEXTS
+    static const struct standby_texts
+        follows = { "ok; a standby follows", "leads; a standby follows" },
+        models = { "ok; a standby follows, but its models differ: the log says why",
+                   "leads; a standby follows, but its models differ: the log says why" },
+        version = { "ok; the standby has another version: it gets no data, but can take over",
+                    "leads; the standby has another version: it gets no data, but can take over" },
+        files = { "ok; the standby has another plant file or tag list and cannot take over: the log says why",
+                  "leads; the standby has another plant file or tag list and cannot take over: the log says why" },
+        denied = { "ok; no standby is connected; this core refuses a node: the log says why",
+                   "leads; no standby is connected; this core refuses a node: the log says why" },
+        none = { "ok; no standby is connected", "leads; no standby is connected" };
     const struct renderer_peer *standby = find_witness(server);
     if (!standby)
-        return has_denied(server) ? &denied : &none;
+        return find_denied(server) ? &denied : &none;
     if (!is_standby(standby))
         return takes_over(standby) ? &version : &files;
     return standby->differing ? &models : &follows;
@@ -201,9 +191,10 @@ static json_t *describe_standby(const struct server_context *server)
     if (!server->params.keeper || !core_end_leads(server))
         return NULL;
     json_t *text = json_pack("{s:b,s:o}", "connected", standby != NULL, "files", core_files_keys(standby ? standby->differing : 0));
-    if (!standby && has_denied(server)) {
-        json_object_set_new(text, "node", json_string(server->core.denied.who));
-        json_object_set_new(text, "why", json_string(server->core.denied.why));
+    const struct denial *denied = standby ? NULL : find_denied(server);
+    if (denied) {
+        json_object_set_new(text, "node", json_string(denied->who));
+        json_object_set_new(text, "why", json_string(denied->why));
     }
     if (!standby)
         return text;
@@ -709,7 +700,10 @@ static void introduce(struct server_context *server, struct renderer_peer *rende
     }
     judge(server, renderer, message, &own);
     if (renderer->state == RENDERER_REFUSED && renderer->stands_by)
-        note_denied(server, renderer->name, renderer->refusal);
+        denials_note(&server->core.denials, renderer->name[0] ? renderer->name : connection_of(renderer->wsi)->address, renderer->refusal,
+                     false, clock_mono_ns());
+    if (is_standby(renderer))
+        denials_forget(&server->core.denials);
     name_standby(server);
     if (renderer->state != RENDERER_TAKEN) {
         say_refusal(server, renderer);

@@ -17,9 +17,10 @@ struct standby_texts {
     const char *ready, *status; /* ready: first part of the body of /readyz; status: for the service manager */
 };
 const struct standby_texts *renderers_standby_texts(const struct server_context *server);
-/* Notes and logs that this core refused the handshake of a node at /core. The node may be the standby: if none is connected, engineers'
-   pages, /readyz and the service manager learn about the refusal. Does nothing on a core that does not lead a pair. */
-void renderers_deny(struct server_context *server, const char *who, const char *why);
+/* Notes and logs that this core refused the handshake of a node at /core with this HTTP status. The node may be the standby: if none is
+   connected, engineers' pages, /readyz and the service manager learn about the refusal. Does nothing on a core that does not lead a
+   pair. */
+void renderers_deny(struct server_context *server, const char *who, int status, const char *why);
 /* Updates what engineers' pages learn about the standby (session_context.standby). Call it whenever this core may have begun to
    lead or to follow. */
 void renderers_describe_standby(struct server_context *server);

@@ -10,6 +10,7 @@
 #include "message/marker_text.h"
 #include "net/address_limits.h"
 #include "net/core_loss.h"
+#include "net/denials.h"
 #include "net/latency_stages.h"
 #include "net/net_params.h"
 #include "net/picture_signer.h"
@@ -93,12 +94,7 @@ struct server_context {
         char key[2 * VIEW_TOKEN_KEY_BYTES + 1]; /* cores only: view token key for the renderers, hexadecimal; "": none */
         char loads[17];                         /* cores only: configuration (hash) that this core began to load last */
         char refused[400]; /* last refusal of a renderer that was logged, so that repetitions are not logged */
-        struct {
-            char who[64]; /* name or address of the refused node */
-            char why[300];
-            int64_t at_ns; /* monotonic time; 0: no node was refused */
-        } denied;          /* leading cores only: the last node refused that may be the standby, for want of rights (renderers_deny()) */
-        struct log_pace denials; /* rate limit of log lines about refused handshakes at /core */
+        struct denials denials; /* leading cores only: the last refused nodes that may be the standby (renderers_deny()) */
         bool listed;       /* renderers only: true: since the plant was loaded, the core has sent its lists (views, notes and so on) */
         /* configuration named in the core's last refusal of this daemon, which then loaded its files again to match it */
         char followed[64];

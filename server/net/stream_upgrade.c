@@ -20,10 +20,10 @@ static int refuse(struct server_context *server, struct lws *wsi, int status, co
     return http_answer(wsi, status, text) < 0 ? -1 : 1;
 }
 
-/* Refuses the handshake of a node at /core for want of rights. */
+/* Refuses the handshake of a node at /core, which may be the standby. */
 static int deny_node(struct server_context *server, struct lws *wsi, int status, const char *text)
 {
-    renderers_deny(server, connection_of(wsi)->address, text);
+    renderers_deny(server, connection_of(wsi)->address, status, text);
     return refuse(server, wsi, status, text);
 }
 

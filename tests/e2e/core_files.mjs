@@ -246,9 +246,16 @@ test('a standby that is refused for its token is named, with the reason', option
         const { connected, why } = await learns(core, ({ why: reason }) => reason);
         assert.equal(connected, false);
         assert.match(why, says);
-        assert.equal(await ready(), 'ok; no standby follows, because this core refuses one: the log says why\n');
+        assert.equal(await ready(), 'ok; no standby is connected; this core refuses a node: the log says why\n');
         await core.program.line(file === unknown ? /core: the connection of \S+ to this core is refused: .*token/
             : /standby \w+: refused: the token r has the role renderer/);
+        if (file === unknown) { // the throttle, which then checks no further token of this address, does not replace the reason
+            for (let i = 0; i < 10; i++)
+                await core.node.fetch('/metrics', 'y'.repeat(43));
+            const held = () => core.node.metric('plantcast_logins_held_total'), sent = await held();
+            await until('an attempt of the standby whose token is not checked', async () => await held() > sent);
+            assert.equal((await learns(core, ({ why: reason }) => reason)).why, why);
+        }
     }
     await other.program.line(/this node's token has the role standby/);
     await other.program.stop();
