@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A trend of eight tags over 30 days, beside live pictures: a zoom draws the values of the new range within 300 ms on two cores.
+// A trend of eight tags over 30 days, while live pictures arrive: a zoom draws the values of the new range within 300 ms on two cores.
 import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';

@@ -219,8 +219,8 @@ static void compare_view(const struct drawn_error_case *site, const struct view 
     mem_free(measured);
 }
 
-/* Compares five views: Shepard interpolation with a low power and two high ones, the interpolation of the paper, and once more
-   the low power with a section box around half of the plant. In the toy plant, distances along the surface equal straight-line
+/* Compares five views: Shepard interpolation with a low power, with two high ones, and with the low power in a section box around
+   half of the plant; and the interpolation of the paper. In the toy plant, distances along the surface equal straight-line
    distances. */
 static void compare(const struct drawn_error_case *site, enum distance_mode distance, struct drawn_error_tally *tally)
 {

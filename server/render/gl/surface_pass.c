@@ -212,7 +212,7 @@ static void gather(struct surface_pass *pass, struct draw_batches *batches, cons
         state.program = choose_program(pass, context, field, variant);
         if (!state.program)
             continue;
-        state.depth_program = blend ? 0 : choose_depth_program(pass, context, field, variant);
+        state.depth_program = choose_depth_program(pass, context, field, variant);
         /* assets that a section plane cuts show their inner side, so back faces are drawn */
         state.two_sided = submesh->double_sided || state.cut;
         state.material = looks_at_material(context, variant) ? (int)submesh->material : -1;

@@ -66,9 +66,9 @@ function at(element, place) {
 // Legend texts by the value of the parameter `show`: functions of the quantity's name and the view's parameters that return
 // [title, suffix, note]. coverage.js has those for rarely used values.
 export const TITLES = { distance: (name, { sensor }) => [say('legend.distance', { tag: sensor ?? '–' })] };
-// Lowest value that a picture can have, by kind of picture (parameter `show`), as a fraction of the group's range. Pictures of
-// these kinds do not depend on readings, so no place in them is uncertain. `blind`, the smallest hot spot that a sensor would show,
-// is 5 % of the range directly at a sensor; a margin for rounding is added.
+// Lowest value of a picture, as a fraction of the group's range, by the value of the parameter `show`. Pictures with such a value
+// do not depend on readings, so no place in them is uncertain. The smallest hot spot that a sensor would show (`blind`) is 5 % of
+// the range directly at a sensor; a margin for rounding is added.
 const LEAST = { distance: 0, uncertainty: 0, blind: 0.05005 };
 const LIMIT_PLACES = { LL: -2, L: -1, H: 1, HH: 2 };
 
