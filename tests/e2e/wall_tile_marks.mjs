@@ -5,7 +5,7 @@ import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { afterEach, beforeEach, test } from 'node:test';
-import { openPage, shoot } from './support/browser.mjs';
+import { keepMediaQueries, openPage, pixelRatioOf, shoot } from './support/browser.mjs';
 import { PlainClient } from './support/plain_client.mjs';
 import { setUp } from './support/set_up.mjs';
 import { notBuilt, sleep, TinyPlant } from './support/tiny_plant.mjs';
@@ -55,7 +55,7 @@ test('the first display leads and titles the view, though another connected firs
     const url = (display) => `http://127.0.0.1:${plant.port}/wall.html?wall=wide&display=${display}`;
     const second = await openPage(url(2), SCREEN);
     await second.page.waitForFunction(() => globalThis.wall?.panes[0]?.session?.tiles.leads);
-    pages = [await openPage(url(1), SCREEN), second];
+    pages = [await openPage(url(1), SCREEN, keepMediaQueries), second];
     for (const { page } of pages)
         await page.waitForFunction(() => globalThis.wall?.panes[0]?.session?.picture);
     await pages[0].page.locator('.picture > h2', { hasText: /^All of it · Temperature · data .* old$/ }).waitFor();
@@ -116,6 +116,11 @@ test('notes and the desk\'s pointer are marked at their places', options, async 
     }
     for (const { page } of pages)
         await page.locator('.marks .pointer').waitFor({ state: 'detached' });
+    const setRatio = await pixelRatioOf(pages[0].page);
+    for (const ratio of [2, 1]) {
+        await setRatio(ratio);
+        await pages[0].page.waitForFunction((wanted) => globalThis.wall.panes[0].session.size.pixel_ratio === wanted, ratio);
+    }
     said({ type: 'remove_note', id });
     await pages[1].page.locator('.marks .note', { hasText: 'Manhole open' }).waitFor({ state: 'detached' });
     point(FAR, 'other');

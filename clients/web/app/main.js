@@ -7,6 +7,7 @@ import { listenToInput } from './input/input.js';
 import { renewIfOld, serveInstalled } from './install.js';
 import { Legend } from './viewport/legend.js';
 import { Overlay } from './viewport/overlay.js';
+import { onPixelRatio } from './viewport/pixel_ratio.js';
 import { LazyModules } from './lazy_modules.js';
 import { Status } from './toolbar/status.js';
 import { AlarmBar } from './alarms/alarm_bar.js';
@@ -99,6 +100,10 @@ viewport.onDrawn = (newPicture, isWarped) => {
     }
 };
 new ResizeObserver(refresh).observe(byId('viewport'));
+onPixelRatio(() => {
+    viewport.measure();
+    refresh();
+});
 // when the toolbar's parts or the panels of picture settings or views open or close, repositions the sensor labels, so that
 // they move aside
 for (const id of ['display', 'more', 'picture-panel', 'views'])

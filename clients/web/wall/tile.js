@@ -16,6 +16,7 @@ import { badge } from '../app/alarms/alarm_bar.js';
 import { clock } from '../app/common/clock.js';
 import { make, setText, setVariable } from '../app/common/dom.js';
 import { Legend } from '../app/viewport/legend.js';
+import { onPixelRatio } from '../app/viewport/pixel_ratio.js';
 import { TileSession } from './tile_session.js';
 
 // SMALLEST: minimum font scale of a title that is too long for one line
@@ -34,7 +35,6 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
     const decoding = browserDecoding();
     const session = new TileSession({ connection, now: clock.now, codecs: decoding.codecs, tile: { wall: wall.id, display, columns, rows },
         canvases, decoding });
-    const ratio = window.devicePixelRatio || 1;
     element.style.gridArea = 'area-main';
     connection.spreadMs = SPREAD_MS;
     connection.onUnopened = () => import('../core/blocked.js').then(({ explain }) => explain(connection), () => {});
@@ -46,13 +46,17 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
     if (colours)
         element.append(legend);
 
-    const fit = () => session.resize({ width: Math.max(16, Math.round(element.clientWidth * ratio)),
-        height: Math.max(16, Math.round(element.clientHeight * ratio)), pixel_ratio: Math.min(8, Math.max(0.25, ratio)) });
+    const fit = () => {
+        const ratio = window.devicePixelRatio || 1, [width, height] = [element.clientWidth, element.clientHeight].map((px) =>
+            Math.max(16, Math.round(px * ratio)));
+        session.resize({ width, height, pixel_ratio: Math.min(8, Math.max(0.25, ratio)) });
+    };
     const flush = () => {
         session.flush();
         requestAnimationFrame(flush);
     };
     new ResizeObserver(fit).observe(element);
+    onPixelRatio(fit);
     decoding.probe().finally(() => {
         fit();
         connection.start();

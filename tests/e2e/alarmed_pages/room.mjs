@@ -5,7 +5,9 @@ import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { before, test } from 'node:test';
 import { alarmed } from './alarmed.mjs';
-import { arrive, land, openPage, PHONE, resize, shoot, TABLET, waitForPicture, withPage } from '../support/browser.mjs';
+import {
+    arrive, keepMediaQueries, land, openPage, PHONE, pixelRatioOf, resize, shoot, TABLET, waitForPicture, withPage,
+} from '../support/browser.mjs';
 import { startAlarmed } from '../support/panels.mjs';
 import { sweep, takes } from '../support/sweep.mjs';
 import { notBuilt } from '../support/tiny_plant.mjs';
@@ -233,6 +235,34 @@ test('after a resize, the old picture stays undistorted and its marks stay in pl
         }
         assert.ok(Math.abs(first.across - first.up) < 1e-3 && first.off < 1.5, JSON.stringify(first));
     });
+});
+
+// Makes the browser observe sizes in CSS pixels only, as Safari does.
+function observeAsSafari() {
+    const { observe } = ResizeObserver.prototype;
+    ResizeObserver.prototype.observe = function observeCssPixels(element, options) {
+        if (options?.box === 'device-pixel-content-box')
+            throw new TypeError('unsupported box');
+        observe.call(this, element, options);
+    };
+}
+
+test('each change of the pixel ratio brings pictures and a legend with as many pixels as the screen has', options, async () => {
+    for (const [name, isSafari] of [['Chromium', false], ['Safari', true]])
+        await withPage(`${url}?lang=en`, SCREENS.desk, async (page) => {
+            await waitForPicture(page);
+            await page.locator('#legend .keys canvas').first().waitFor();
+            const setRatio = await pixelRatioOf(page);
+            for (const ratio of [2, 1.5, 1]) {
+                await setRatio(ratio);
+                await becomes(() => page.evaluate(() => {
+                    const { session: { picture, size }, viewport } = globalThis.plantcast;
+                    return { ratio: size.pixel_ratio, sample: document.querySelector('#legend .keys canvas').width / 18,
+                        off: Math.max(Math.abs(picture.fullWidth - viewport.width * devicePixelRatio),
+                            Math.abs(picture.fullHeight - viewport.height * devicePixelRatio)) > 2 };
+                }), { ratio, sample: ratio, off: false }, `${name}, ${ratio}`, 30);
+            }
+        }, keepMediaQueries, (page) => isSafari && page.addInitScript(observeAsSafari));
 });
 
 // With more quantities than fit, the row of their names can be dragged sideways; if a key or a server message selects one that

@@ -196,6 +196,33 @@ export async function resize(page, viewport) {
     }, viewport);
 }
 
+// Run in a page before its scripts: keeps the page's media queries with their last results, for pixelRatioOf().
+export function keepMediaQueries() {
+    const { matchMedia } = window;
+    globalThis.mediaQueries = new Map();
+    window.matchMedia = (text) => {
+        const query = matchMedia.call(window, text);
+        globalThis.mediaQueries.set(query, query.matches);
+        return query;
+    };
+}
+
+// Returns a function that changes the pixel ratio, but not the window's size in CSS pixels, as when the window moves to another display.
+// Chromium changes the results of media queries, but sends no event if the ratio is emulated, so the function sends the events.
+export async function pixelRatioOf(page) {
+    const client = await page.context().newCDPSession(page);
+    return async (deviceScaleFactor) => {
+        await client.send('Emulation.setDeviceMetricsOverride', { ...page.viewportSize(), deviceScaleFactor, mobile: false });
+        await page.evaluate(() => {
+            for (const [query, was] of [...globalThis.mediaQueries]) {
+                globalThis.mediaQueries.set(query, query.matches);
+                if (query.matches !== was)
+                    query.dispatchEvent(new MediaQueryListEvent('change', { matches: query.matches, media: query.media }));
+            }
+        });
+    };
+}
+
 // true: take screenshots. Only `make test-long` and PLANTCAST_SHOTS=1 set it, because they take longer than the tests
 // themselves.
 export const SHOOTS = sweep(true, process.env.PLANTCAST_SHOTS === '1');

@@ -10,13 +10,6 @@ export const clock = {
     clearTimeout: (id) => clearTimeout(id),
 };
 
-// Keeps the screen on, if the browser allows it.
-export function keepScreenOn() {
-    const ask = () => !document.hidden && navigator.wakeLock?.request('screen').catch(() => {});
-    document.addEventListener('visibilitychange', ask);
-    ask();
-}
-
 // Calls onWake() after the device has slept, because all values on the page are outdated then.
 export function watchSleep(onWake) {
     const wake = new Wake({

@@ -5,6 +5,7 @@ import { colourOf, edges, LIMIT_BANDS, placeOf, scaleTicks, spread, valueAt } fr
 import { hatchAt, patternPeriodPx, ruleAt, stippleAt } from '../../core/patterns.js';
 import { say } from '../../core/words.js';
 import { make, makeSvg, phone, setVariable } from '../common/dom.js';
+import { onPixelRatio } from './pixel_ratio.js';
 
 const BAR_TEXELS = 1024;
 const css = ([r, g, b]) => `rgb(${r} ${g} ${b})`;
@@ -90,7 +91,7 @@ export class Legend {
         new ResizeObserver(() => this.fit()).observe(element);
         for (const name of ['params', 'shown', 'proofs'])
             session.on(name, () => this.show());
-        window.matchMedia(`(resolution: ${window.devicePixelRatio}dppx)`).addEventListener('change', () => this.show(true));
+        onPixelRatio(() => this.show(true));
     }
 
     // Redraws the legend if its bar's length has changed, because the labels keep their distance in pixels.

@@ -58,7 +58,7 @@ export class Viewport {
         const box = this.element.getBoundingClientRect();
         this.session.resize(sizeOf(devicePixels(box.width), devicePixels(box.height)));
         let timer;
-        const observer = new ResizeObserver(([entry]) => {
+        this.observer = new ResizeObserver(([entry]) => {
             const exact = entry.devicePixelContentBoxSize?.[0];
             const width = devicePixels(entry.contentRect.width, exact?.inlineSize);
             const height = devicePixels(entry.contentRect.height, exact?.blockSize);
@@ -66,10 +66,18 @@ export class Viewport {
             timer = setTimeout(() => this.session.resize(sizeOf(width, height)), RESIZE_WAIT_MS);
             this.invalidate();
         });
+        this.measure();
+    }
+
+    // Measures the viewport, and requests pictures of its size. Called at the start and after changes of the pixel ratio; changes of the
+    // size in CSS pixels are noticed without a call.
+    measure() {
+        const { element, observer } = this;
+        observer.disconnect(); // an observer reports an element that it observes already only if the element's size changes
         try {
-            observer.observe(this.element, { box: 'device-pixel-content-box' });
+            observer.observe(element, { box: 'device-pixel-content-box' });
         } catch {
-            observer.observe(this.element); // Safari does not support device-pixel-content-box
+            observer.observe(element); // Safari does not support device-pixel-content-box
         }
     }
 

@@ -3,8 +3,8 @@
 import { learnWords, say } from '../../core/words.js';
 import { numberText } from '../../core/format.js';
 import { legendsLie, readWall, SPREAD_MS, wallFit } from '../../core/wall.js';
-import { keepScreenOn } from '../common/clock.js';
 import { byId, make, setVariable, styled } from '../common/dom.js';
+import { keepScreenOn } from './keep_screen_on.js';
 
 const FAR_MS = 60000; // milliseconds for which the page tells the installer from which distance its text is readable
 // smallest height of the picture as a fraction of the window's height; the whole page shrinks rather than the picture
