@@ -6,6 +6,10 @@
 FIELD_TYPE field_here(FIELD_TYPE interpolated)
 {
     vec4 here = reference_field();
+#ifndef PIXEL_FIELD
+    // Along surfaces, distances are interpolated over the triangle. Therefore places whose error was measured at the vertices stay marked.
+    here.z = choice.y != 0 ? max(here.z, interpolated.z) : here.z;
+#endif
 #ifndef RICH
     return vec3((here.x - frame.scale.x) * frame.scale.y, here.yz);
 #elif defined(PIXEL_FIELD)

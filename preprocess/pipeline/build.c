@@ -13,6 +13,7 @@
 #include "plant/exact.h"
 #include "plant/influence.h"
 #include "plant/recipe.h"
+#include "plant/singles.h"
 #include "preprocess/influence/influence_file.h"
 #include "preprocess/levels/clusters.h"
 #include "preprocess/pipeline/sensor_distances.h"
@@ -48,7 +49,7 @@ static bool is_constant(const struct plant *plant, const struct plant_sensor *se
 {
     for (size_t i = 0; i < count; i++) {
         const struct plant_group *group = &plant->groups[plant->tags[sensors[i].tag].group];
-        if (group->reach_m < INFINITY || straight_looks_at_paper(group, 1) || !is_alone(plant, sensors, count, i))
+        if (group->reach_m < INFINITY || plant_cuts_for_paper(group, 1) || !is_alone(plant, sensors, count, i))
             return false;
     }
     return true;
@@ -92,7 +93,7 @@ static void hash_field(XXH3_state_t *state, const struct plant *plant, const str
         XXH3_64bits_update(state, "h", 1);
     if (group->directed)
         XXH3_64bits_update(state, "d", 1);
-    if (is_alone(plant, sensors, count, sensor) && !straight_looks_at_paper(group, 1))
+    if (is_alone(plant, sensors, count, sensor) && !plant_cuts_for_paper(group, 1))
         XXH3_64bits_update(state, "s", 1);
     if (plant_group_is_exact(group))
         XXH3_64bits_update(state, "x", 1);

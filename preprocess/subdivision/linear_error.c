@@ -14,18 +14,10 @@
 /* maximum amount, as a share of the value range, that is subtracted from an error because a coarse level may show the value of
    a point up to slack_m away */
 #define MAX_SLACK (1 / 255.0)
-/* Errors of Algorithm 1 of Kim & Suh are not measured for groups with more sensors: each sensor has so small a weight there
-   that these errors are far below those of Shepard interpolation. */
-#define MANY 64
 
 static double factor_of(double x)
 {
     return x > 0 && x < 1e4 ? x : x > 0 ? 1e4 : 0;
-}
-
-bool straight_looks_at_paper(const struct plant_group *group, size_t sensor_count)
-{
-    return sensor_count <= MANY && (sensor_count > 1 || plant_cuts_singles(group));
 }
 
 static void add_group(struct linear_error *linear, const struct plant *plant, int group, const struct plant_sensor *sensors)
@@ -53,7 +45,7 @@ static void add_group(struct linear_error *linear, const struct plant *plant, in
         to->of.decays |= decay[i] != 1;
     }
     to->in_a_row = to->columns[to->count - 1] - to->columns[0] == to->count - 1;
-    to->papers = straight_looks_at_paper(from, to->count);
+    to->papers = plant_cuts_for_paper(from, to->count);
     linear->group_count++;
     linear->share_count += (to->papers ? 4 : 2) * padded;
     linear->most_count = padded > linear->most_count ? padded : linear->most_count;

@@ -30,10 +30,6 @@ struct linear_error {
     float *axes_m[3];
 };
 
-/* Returns whether errors of Algorithm 1 are included for a group with sensor_count sensors on an asset: not with more than 64
- * sensors, and with only one sensor only if the plant file says `singles: cut`. */
-bool straight_looks_at_paper(const struct plant_group *group, size_t sensor_count);
-
 /* Prepares to measure interpolation errors for a plant's groups and an asset's sensors. places_m: positions of the sensors on
  * the surface; copied. Set radii that the plant file omits with linear_error_set_radius(). Finish with linear_error_finish().
  * */

@@ -198,7 +198,7 @@ static void add_errors(struct sampler *sampler, const struct triangle_piece *pie
         bool shown;
         float *error = sampler->errors[pieces[j].tri], worst = fmaxf(more[j], less[j]);
         if (hides_rim(sampler, j, &pieces[j], sampler->points.parts[j], &shown))
-            *error = 1;
+            *error = WEIGHTS_SHOWS_NO_DATA;
         else if (shown && worst > MIN_ERROR)
             *error = fmaxf(*error, worst);
     }
@@ -356,7 +356,7 @@ static float find_erring(const struct asset_view *file, const struct asset_level
             vecf_normal(at[file->indices[i]], at[file->indices[i + 1]], at[file->indices[i + 2]], normal);
             double area = vec_length(normal);
             all += area;
-            largest = fmaxf(largest, errors[i / 3]);
+            largest = fmaxf(largest, fminf(errors[i / 3], 1));
             for (int b = 0; b < WEIGHTS_ERRING; b++)
                 areas[b] += errors[i / 3] >= ldexpf(1, -b) ? area : 0;
         }
@@ -452,9 +452,21 @@ static void measure_level(struct drawn_error_job *job, const struct asset_level 
     mem_free(ones);
 }
 
+/* Returns true if the field has the same value everywhere, and data everywhere: it is that of one sensor without a limit of its
+   reach, and no sensor is lost. */
+static bool is_constant(const struct weights *weights)
+{
+    if (weights->member_count != 1 || weights->interpolation != INTERPOLATION_SHEPARD || weights->reach_m < INFINITY)
+        return false;
+    for (size_t i = 0; i < weights->layout->sensor_count; i++)
+        if (weights->configured[i] && !weights->takes_part[i])
+            return false;
+    return true;
+}
+
 /* Returns true if the subdivision chosen in preparation suffices (preprocess/subdivision/linear_error.h), because the weights
-   are no more curved than preparation assumed. They may be more curved when sensors are missing: the field then bends at other
-   places, perhaps in larger triangles. */
+   are those that preparation assumed. With another power, or when sensors are missing, the field bends at other places, perhaps
+   in larger triangles: with a power below 2, the field has a kink at each sensor. */
 static bool is_as_prepared(const struct weights *weights, const struct field_params *params)
 {
     const struct field_layout *layout = weights->layout;
@@ -468,9 +480,9 @@ static bool is_as_prepared(const struct weights *weights, const struct field_par
         if (weights->configured[i] && !weights->takes_part[i])
             return false;
     if (params->interpolation == INTERPOLATION_SHEPARD)
-        return params->power <= group->power;
+        return params->power == group->power;
     return params->strength == 1 && params->decay == 1 && params->radius_m == group->radius_m &&
-           (layout->sensor_count > 1 || plant_cuts_singles(group));
+           plant_cuts_for_paper(group, layout->sensor_count);
 }
 
 void drawn_error_measure(struct weights *weights, const struct field_params *params, const uint8_t *usable, size_t vertices, bool in_range,
@@ -485,8 +497,7 @@ void drawn_error_measure(struct weights *weights, const struct field_params *par
     /* measures nothing if each pixel evaluates the field, because frames then do not interpolate within triangles */
     if (layout_is_exact(layout, weights->interpolation, weights->distance))
         return;
-    if (weights->measured_levels & bit || weights->prepared || layout->assumed || weights->member_count == 0 ||
-        (weights->member_count == 1 && weights->interpolation == INTERPOLATION_SHEPARD))
+    if (weights->measured_levels & bit || weights->prepared || layout->assumed || weights->member_count == 0 || is_constant(weights))
         return;
     const bool resolved = layout->file->resolved_levels & bit && in_range && is_as_prepared(weights, params);
     if (resolved && !amplifies_distances(weights))

@@ -35,7 +35,7 @@ static double error_near(const struct field_state *state, const struct field_pla
     if (errors && weights->interpolation_errors)
         errors = weights->interpolation_errors;
     for (int k = 0; k < 3 && errors; k++)
-        most = fmax(most, (double)errors[place->corners[k]]);
+        most = fmax(most, fmin((double)errors[place->corners[k]], 1));
     most = most * state->error_scale + of_distances;
     return most > state->error_limit * state->error_scale ? most : 0;
 }

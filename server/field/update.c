@@ -235,7 +235,8 @@ void update_flags(const struct field_state *state, const struct weights *weights
     uint8_t spread = fill && !blind && at->no_data == 0 && !at->no_limits ? weights->lost[vertex] : 0;
     at->uncertain = uncertain_of(marked, total, spread);
     at->lacking = weights_lacking_at(weights, vertex, filled);
-    if (weights->errors && (double)weights->errors[vertex] > state->error_limit && !field_params_cover(&state->params))
+    const float error = weights->errors && !field_params_cover(&state->params) ? weights->errors[vertex] : 0;
+    if ((double)error > state->error_limit || (error >= WEIGHTS_SHOWS_NO_DATA && !weights->prepared))
         at->uncertain = FLAG;
 }
 

@@ -36,6 +36,10 @@ struct weights_key { /* key of cached weights: the bytes of everything on which 
     uint64_t hash;
 };
 
+/* element of weights->errors of a triangle that shows data where the field has none, for weights that are not prepared; their
+   errors of values are smaller */
+#define WEIGHTS_SHOWS_NO_DATA 4.0f
+
 enum { WEIGHTS_ERRING = 9 }; /* number of error thresholds for which area or vertices are counted: 1, 1/2, 1/4 ... 1/256 of the
                                 range; the last is about one colour step */
 
@@ -82,10 +86,11 @@ struct weights {
     const float *priors;     /* [vertex], for interpolation gp (Gaussian process): standard deviation of the field without any sensor */
     /* for interpolation gp (Gaussian process): standard deviation of the field before any reading is known (the prior) */
     float deviation;
-    float *errors;           /* [vertex]: largest error of linear interpolation within the adjacent triangles; unit and method in
-                                drawn_error.h; NULL: not measured */
+    /* [vertex]: largest error of linear interpolation within the adjacent triangles, or WEIGHTS_SHOWS_NO_DATA; unit and method in
+       drawn_error.h; NULL: not measured */
+    float *errors;
     float *interpolation_errors; /* `errors` without the part due to errors of distances; NULL: `errors` has no such part */
-    float largest_error;     /* largest element of `errors` */
+    float largest_error;         /* largest element of `errors`, without WEIGHTS_SHOWS_NO_DATA */
     /* erring[b]: fraction of the surface (for prepared interpolations: of the vertices) whose interpolation error is at least
        2^-b; the largest over all measured levels of detail */
     float erring[WEIGHTS_ERRING];

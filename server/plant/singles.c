@@ -5,10 +5,19 @@
 #include "base/mem.h"
 #include "plant/influence.h"
 
+/* `paper` is not measured for more sensors than this: each sensor then has so small a weight that its errors are usually far
+   below those of `shepard`. */
+#define MANY 64
+
 bool plant_cuts_singles(const struct plant_group *group)
 {
     return group->interpolation == INTERPOLATION_PAPER || plant_prepares(group, INTERPOLATION_FIN) ||
            plant_prepares(group, INTERPOLATION_GP) || group->cuts_singles;
+}
+
+bool plant_cuts_for_paper(const struct plant_group *group, size_t sensor_count)
+{
+    return sensor_count <= MANY && (sensor_count > 1 || plant_cuts_singles(group));
 }
 
 size_t plant_singles(const struct plant *plant, int group, int *first)

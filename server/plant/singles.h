@@ -10,6 +10,9 @@
 /* Returns whether plantcast-prep subdivides triangles even of assets with only one sensor of the group, so that `paper` and
    distances are shown correctly there. */
 bool plant_cuts_singles(const struct plant_group *group);
+/* Returns whether plantcast-prep subdivides triangles so that `paper` is shown correctly on an asset with this number of the
+   group's sensors: not with more than 64, and with one only if plant_cuts_singles(). */
+bool plant_cuts_for_paper(const struct plant_group *group, size_t sensor_count);
 /* Counts the assets that have exactly one sensor of the group. Returns the count; if it is not 0, *first receives the index of the first
    such asset. */
 size_t plant_singles(const struct plant *plant, int group, int *first);

@@ -451,15 +451,17 @@ TEST(test_equal_readings_mark_nothing)
     stand_finish(&stand);
 }
 
-/* The error bound that preparation stored holds only while all sensors are good and all readings are within the range.
-   Otherwise the renderer must measure the error. */
-TEST(test_lost_sensors_and_wild_readings_are_measured)
+/* The error bound that preparation stored holds only for the plant file's power, while all sensors are good and all readings are
+   within the range. Otherwise the renderer must measure the error. */
+TEST(test_lost_sensors_wild_readings_and_other_powers_are_measured)
 {
     struct stand stand;
     struct view view;
     stand_on_plate(&stand, &view, 1);
-    /* way 0: all sensors good, as assumed by preparation; 1: one sensor Bad; 2: one reading far out of the range */
-    for (int way = 0; way < 3; way++) {
+    /* way 0: all sensors good, as assumed by preparation; 1: one sensor Bad; 2: one reading far out of the range; 3: a lower
+       power; 4: a higher power */
+    for (int way = 0; way < 5; way++) {
+        view.field.power = way == 3 ? 1 : way == 4 ? 4 : 2;
         for (int i = 0; i < MANY; i++)
             toy_set(stand.snapshot, i, 20 + 5 * i, way == 1 && i == 1 ? QUALITY_BAD_COMMUNICATION_ERROR : QUALITY_GOOD);
         if (way == 2)
@@ -469,6 +471,104 @@ TEST(test_lost_sensors_and_wild_readings_are_measured)
         frame_unref(&frame);
     }
     stand_finish(&stand);
+}
+
+static int count_marked(const struct stand *stand, const struct view *view)
+{
+    float(*measured)[4] = mem_array(PIXELS, sizeof(*measured));
+    int marked = 0;
+    assert_true(renderer_measure(stand->renderer, view, stand->snapshot, true, measured));
+    for (int i = 0; i < PIXELS; i++)
+        marked += measured[i][1] >= 0 && measured[i][1] <= 0.5f && measured[i][2] > 0.5f;
+    mem_free(measured);
+    return marked;
+}
+
+/* Also if shaders sum over all sensors at each pixel, the distances along a surface are interpolated over a triangle. Therefore
+   long triangles stay marked. */
+TEST(test_a_field_per_fragment_marks_long_triangles)
+{
+    struct stand stand;
+    struct view view;
+    stand_on_plate(&stand, &view, 0);
+    view.field.distance = DISTANCE_GEODESIC;
+    for (int i = 0; i < MANY; i++)
+        toy_set(stand.snapshot, i, i % 2 ? 90 : 10, QUALITY_GOOD);
+    int at_vertices = count_marked(&stand, &view);
+    renderer_set_per_fragment(stand.renderer, true);
+    int per_fragment = count_marked(&stand, &view);
+    print_message("# %d pixels are marked, %d with a field per fragment\n", at_vertices, per_fragment);
+    assert_true(at_vertices > 1000 && per_fragment >= at_vertices);
+    stand_finish(&stand);
+}
+
+/* Makes a square plate of two triangles with two small boxes, one for each sensor, near its corner, and a plate of small triangles
+   beside this corner. */
+static void make_pair(struct test_shape *shape, double (*places)[3])
+{
+    shape_plate(shape, TOY_STEEL, (double[3]){ 0 }, (double[3]){ SIDE_M, 0, 0 }, (double[3]){ 0, SIDE_M, 0 }, 1);
+    shape_plate(shape, TOY_STEEL, (double[3]){ -1, 0, 0 }, (double[3]){ 1, 0, 0 }, (double[3]){ 0, 1, 0 }, CELLS);
+    for (int i = 0; i < 2; i++) {
+        double x = between(0.2, 0.5) + 0.5 * i, y = between(0.2, 0.5) + 0.5 * i;
+        memcpy(places[i], (double[3]){ x, y, 0.02 }, sizeof(places[i]));
+        shape_box(shape, TOY_BLUE, (double[3]){ x - 0.01, y - 0.01, 0.01 }, (double[3]){ x + 0.01, y + 0.01, 0.02 });
+    }
+}
+
+/* Returns how much nearer the picked point is to the Bad sensor than to the good one, in metres. */
+static double lacking_m(const struct drawn_error_case *site, const struct pick *pick)
+{
+    double away_m[2] = { 0 };
+    for (int i = 0; i < 2; i++) {
+        const struct scene_sensor *sensor = &site->scene->assets[pick->asset].sensors[i];
+        for (int c = 0; c < 3; c++)
+            away_m[i] = hypot(away_m[i], pick->position_m[c] - sensor->surface_m[c]);
+    }
+    return away_m[0] - away_m[1];
+}
+
+/* Of two sensors on a plate of two triangles, one is Bad. Places that are nearer to it than to the other sensor have no data.
+   Pictures must show that, or mark the place as uncertain, although all values are equal. */
+TEST(test_a_lost_sensor_keeps_its_place)
+{
+    int nearer = 0, painted = 0, unmarked = 0;
+    random_state = sweep_seed();
+    for (int round = 0; round < sweep(12, 3); round++) {
+        struct toy *toy = toy_create();
+        struct test_shape shape = { 0 };
+        struct stand stand;
+        struct view view;
+        double places[2][3];
+        float(*measured)[4] = mem_array(PIXELS, sizeof(*measured));
+        make_pair(&shape, places);
+        toy_add(toy, "PLATE", &shape, (double[3]){ 0, 0, 0 }, (const double(*)[3])places, 2);
+        stand_init(&stand, &rig, toy);
+        toy_set(stand.snapshot, 0, 50, QUALITY_GOOD);
+        toy_set(stand.snapshot, 1, 50, QUALITY_BAD_COMMUNICATION_ERROR);
+        struct drawn_error_case site = { &toy->scene, stand.field, stand.renderer, stand.snapshot };
+        view_default(&toy->scene, WIDTH_PX, HEIGHT_PX, &view);
+        view.field.distance = DISTANCE_GEODESIC;
+        look(&toy->scene, &view);
+        assert_true(renderer_measure(stand.renderer, &view, stand.snapshot, true, measured));
+        for (int i = 0; i < PICKS; i++) {
+            int x = (int)between(0, WIDTH_PX), y = (int)between(0, HEIGHT_PX);
+            const float *pixel = measured[y * WIDTH_PX + x];
+            struct pick pick;
+            pick_at(&toy->scene, stand.field, &view, stand.snapshot, x + 0.5, y + 0.5, &pick);
+            if (pick.asset < 0 || pixel[1] < 0)
+                continue;
+            bool shown = pixel[1] <= 0.5f && pixel[2] <= 0.5f, is_nearer = lacking_m(&site, &pick) > 0.05;
+            nearer += is_nearer;
+            painted += is_nearer && shown;
+            unmarked += lacking_m(&site, &pick) < -0.05 && shown;
+        }
+        mem_free(measured);
+        stand_finish(&stand);
+    }
+    print_message("# %d places nearer to the Bad sensor, %d of them painted; %d places of the good sensor are unmarked\n", nearer, painted,
+                  unmarked);
+    assert_true(nearer > 300 && unmarked > 20);
+    assert_int_equal(painted, 0);
 }
 
 /* --- what was found --------------------------------------------------------------------------------------------------------- */
