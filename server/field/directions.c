@@ -105,17 +105,6 @@ static struct spread spread_of(const struct field_layout *layout, const float *a
                             .uncertain = said->uncertain };
 }
 
-static double mean_m(const struct field_layout *layout, enum distance_mode mode, size_t sensor, const struct direction_place *place)
-{
-    double sum_m = 0;
-    for (int i = 0; i < 3; i++) {
-        float room;
-        if (place->weights[i] > 0)
-            sum_m += (double)(place->weights[i] * *layout_distances(layout, mode, sensor, place->corners[i], 1, &room));
-    }
-    return max_of(sum_m, AT_ONE_PLACE);
-}
-
 /* Computes the sensor's reference unit vector at the point, after parallel transport along the surface. Returns false if no
    path leads to the point. */
 static bool carry(const struct field_layout *layout, const float *angles, double turn, const struct direction_place *place, double out[3])
@@ -153,10 +142,15 @@ static struct direction find_one(const struct field_layout *layout, const float 
     struct direction out = { 0 };
     double sum[3] = { 0 }, whole = 0, unsure = 0, nearest_m = INFINITY, lost_m = INFINITY, v[3];
     double power = params->interpolation == INTERPOLATION_SHEPARD ? params->power : 2;
+    struct layout_point point;
+    float room;
+    layout_point_init(&point, layout, place->corners, place->weights);
     for (size_t i = 0; i < layout->sensor_count; i++) {
-        double away_m = spreads[i].configured ? mean_m(layout, params->distance, i, place) : INFINITY;
+        double away_m =
+            spreads[i].configured ? (double)*layout_distances(&point.layout, params->distance, i, 0, 1, &room) : (double)INFINITY;
         if (!(away_m <= params->reach_m) || !isfinite(away_m) || strength_of(layout, params, i) <= 0)
             continue;
+        away_m = max_of(away_m, AT_ONE_PLACE);
         if (!spreads[i].known || !carry(layout, angles + i * layout->vertex_count, spreads[i].turn, place, v)) {
             lost_m = min_of(lost_m, away_m);
             continue;

@@ -2,7 +2,8 @@
 /* Vectors on a surface, for groups whose sensors have directions (column `Direction` of the tag list). A vector's length is the
    field's value, interpolated as usual. Its direction is that of sum_i w_i v_i with w_i = s_i / D_i^p, where v_i are the
    sensors' vectors after parallel transport along the surface to the point (prepared: preprocess/influence/transport.h). So
-   vectors on two sides of a sphere do not cancel in between merely because they point in opposite directions in space. A
+   vectors on two sides of a sphere do not cancel in between merely because they point in opposite directions in space. D_i are
+   the distances of the point itself, also inside large triangles, as field_at() uses them (layout_distances() in layout.h). A
    direction is unknown where no sensor with a direction reaches, and where a sensor without a usable direction or reading is
    nearest. It is also unknown where vectors cancel (|sum| < DIRECTION_LEAST times the sum of their lengths), and where a vector
    is nearly perpendicular to the surface. Call from any thread that may read the scene. */

@@ -40,23 +40,7 @@ static double error_near(const struct field_state *state, const struct field_pla
     return most > state->error_limit * state->error_scale ? most : 0;
 }
 
-struct single_point { /* a layout (sensors and distances) for one point instead of the asset's vertices */
-    float position_m[1][3], parts[1][3], away_m[1][3];
-    uint32_t corners[1][3];
-    struct layout_points points;
-    struct field_layout layout;
-};
-
-static void single_point_init(struct single_point *point, const struct field_layout *layout, const struct field_place *place)
-{
-    *point = (struct single_point){ .points = { point->position_m, point->corners, point->parts, point->away_m }, .layout = *layout };
-    point->layout.points = &point->points;
-    point->layout.vertex_count = 1;
-    const float parts[3] = { (float)place->parts[0], (float)place->parts[1], (float)place->parts[2] };
-    layout_set_point(&layout->file->view, &point->points, 0, place->corners, parts);
-}
-
-static void point_distance(const struct field_state *state, const struct single_point *point, struct field_point *out)
+static void point_distance(const struct field_state *state, const struct layout_point *point, struct field_point *out)
 {
     float room;
     size_t i = 0;
@@ -71,7 +55,7 @@ static void point_distance(const struct field_state *state, const struct single_
 
 /* Sums the sensors' weights at the point, multiplied by the readings from which the scalars were computed, with the same
    arithmetic as at vertices. Returns the largest change of the value due to errors of distances, for these readings. */
-static double point_sum(const struct field_state *state, const struct single_point *point, struct field_point *out)
+static double point_sum(const struct field_state *state, const struct layout_point *point, struct field_point *out)
 {
     const size_t sensors = point->layout.sensor_count;
     double deviation = 0;
@@ -130,8 +114,9 @@ bool field_at(struct field *field, int asset, const struct field_params *params,
     *out = (struct field_point){ .no_data = true };
     if (count > 0)
         point_drawn(scalars, place, out);
-    struct single_point point;
-    single_point_init(&point, state->layout, place);
+    struct layout_point point;
+    layout_point_init(&point, state->layout, place->corners,
+                      (const float[3]){ (float)place->parts[0], (float)place->parts[1], (float)place->parts[2] });
     if (params->show == SHOW_DISTANCE) {
         point_distance(state, &point, out);
         return true;

@@ -208,6 +208,14 @@ const float *layout_distances(const struct field_layout *layout, enum distance_m
     return scratch;
 }
 
+void layout_point_init(struct layout_point *point, const struct field_layout *layout, const uint32_t corners[3], const float parts[3])
+{
+    *point = (struct layout_point){ .points = { point->position_m, point->corners, point->parts, point->away_m }, .layout = *layout };
+    point->layout.points = &point->points;
+    point->layout.vertex_count = 1;
+    layout_set_point(&layout->file->view, &point->points, 0, corners, parts);
+}
+
 struct lost_vertex_search {
     const struct field_layout *layout;
     enum distance_mode mode;

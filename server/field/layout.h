@@ -50,6 +50,15 @@ struct field_layout {
     uint32_t trial;
 };
 
+/* A layout for one point of the surface instead of the asset's vertices. Its pointers lead into the struct itself, so it must
+   not be copied or moved. */
+struct layout_point {
+    float position_m[1][3], parts[1][3], away_m[1][3];
+    uint32_t corners[1][3];
+    struct layout_points points;
+    struct field_layout layout;
+};
+
 /* Creates the layout of a group's sensors on an asset. trial: moved sensors; NULL: none. Scene and trial must outlive the
    layout. Returns NULL if no sensor of the group is on the asset. */
 struct field_layout *layout_create(const struct scene *scene, int asset, int group, const struct trial *trial);
@@ -75,6 +84,9 @@ bool layout_is_in_file(const struct layout_sensor *sensor, enum distance_mode mo
    surface point, so that both kinds are 0 there; they replace geodesic distances that are not known yet. */
 const float *layout_distances(const struct field_layout *layout, enum distance_mode mode, size_t sensor, size_t begin, size_t count,
                               float *scratch);
+/* Initialises the layout for one point, given by its triangle's corners and its barycentric coordinates there. `layout`, whose
+   sensors the point uses, must outlive it. Nothing needs freeing. */
+void layout_point_init(struct layout_point *point, const struct field_layout *layout, const uint32_t corners[3], const float parts[3]);
 /* Returns the largest finite distance between a vertex of the asset and a sensor, computed once; 1 if all are 0 or infinite, so
    that callers can divide by it. */
 float layout_largest(struct field_layout *layout, enum distance_mode mode, struct workers *workers);

@@ -447,6 +447,47 @@ CASE(test_directions)
     }
 }
 
+/* Inside a triangle as long as the strip, directions are weighed by the distances of the point itself: at a sensor in its middle,
+   only that sensor counts. Linear means of the corners' distances would put the point 3.2 m away from the sensor. */
+CASE(test_directions_inside_a_large_triangle)
+{
+    static const double ends[3][2] = { { 0, 0.05 }, { STRIP_M, 0 }, { STRIP_M, WIDTH_M } };
+    static const enum distance_mode modes[] = { DISTANCE_EUCLIDEAN, DISTANCE_GEODESIC };
+    struct direction_place place = { .weights = { 0.8f, 0.1f, 0.1f }, .normal = { 0, 0, 1 } };
+    struct sensor_direction *said;
+    struct direction found;
+    write_model(c);
+    write_plant(c, "", "", 1);
+    write_directions(c, false);
+    prep_case_expect(c, "$PLANT", 0);
+    struct plant_in_use *u = use_prepared(c);
+    const struct asset_view *view = &u->scene->assets[0].file->view;
+    for (size_t i = 0; i < 4; i++) {
+        say(u, "T", i, 5);
+        say(u, "U", i, 3);
+        say(u, "V", i, i == 0 ? 4 : -4);
+        say(u, "W", i, 0);
+    }
+    for (int k = 0; k < 3; k++) {
+        double best_m = INFINITY;
+        for (uint32_t v = 0; v < view->header->vertex_count; v++) {
+            double x_m = (double)view->positions_m[v][0] + view->header->origin_m[0] - ends[k][0];
+            double away_m = hypot(x_m, (double)view->positions_m[v][1] + view->header->origin_m[1] - ends[k][1]);
+            if (away_m < best_m)
+                place.corners[k] = v;
+            best_m = fmin(best_m, away_m);
+        }
+    }
+    size_t count = directions_read(u->scene, 0, 0, u->snapshot, &said);
+    for (int i = 0; i < 2; i++) {
+        u->params.distance = modes[i];
+        directions_find(&(struct direction_sources){ u->scene, 0, &u->params, said, count }, &place, 1, &found);
+        print_message("%s: %.3f, %.3f\n", i ? "along the surface" : "straight", (double)found.along[0], (double)found.along[1]);
+        expect_along(&found, 0.6, 0.8);
+    }
+    mem_free(said);
+}
+
 #define GP_KEYS ", interpolation: gp, gp: { range_m: 3, noise: 0.5, deviation: 30 }, disc_m: 0.1"
 
 /* The gp field (Gaussian process) shows each sensor's reading at the sensor and follows when one changes. If a sensor is lost,
