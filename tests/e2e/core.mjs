@@ -4,10 +4,11 @@
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
+import { createServer } from 'node:net';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { makeCertificate } from './support/certificate.mjs';
-import { Node, Nodes, sleep, until } from './support/nodes.mjs';
+import { Node, Nodes, until } from './support/nodes.mjs';
 import { PlainClient } from './support/plain_client.mjs';
 import { otherVersion } from './support/other_version.mjs';
 import { promise } from './support/promise.mjs';
@@ -15,13 +16,14 @@ import { setUp } from './support/set_up.mjs';
 import { notBuilt, Program, runProgram } from './support/tiny_plant.mjs';
 
 const options = { skip: notBuilt(), timeout: 300000 };
-let nodes, core, a, b;
+let nodes, core, a, b, setAt;
 
 setUp(options.skip, async (own) => {
     nodes = own(await Nodes.create({ slowDevice: true }));
     core = await nodes.core();
     [a, b] = await Promise.all([nodes.renderer('a', core), nodes.renderer('b', core)]);
     await nodes.plant.set({ 'TI-1': 80.25, 'TI-2': 20, 'PI-1': 5 });
+    setAt = performance.now();
 });
 
 const alarm = async (node, state, name = 'TI-1') => {
@@ -41,7 +43,8 @@ test('renderers show the core\'s values, qualities and source times; the device 
     await all(async (node) => (await node.tags())['PI-1'].quality_name === bad);
     await nodes.plant.tell('release PI-1');
     await all(async (node) => (await node.tags())['PI-1'].quality_name === 'Good');
-    await sleep(2000); // waits longer than the age at which a reading becomes stale; unchanged readings must stay Good
+    // the value was set more than 1 s ago, after which a reading becomes stale; unchanged readings must stay Good
+    await until('its stale time', () => performance.now() - setAt > 1100);
     await until('a steady value that is not stale', async () => (await a.tags())['TI-2'].quality_name === 'Good');
     await nodes.onePoller();
     await until('two renderers', async () => await core.metric('plantcast_renderers') === 2);
@@ -193,7 +196,7 @@ test('a core of another version or plant with the same tags is named by both nod
         await renderer.ready();
         await renderer.program.line(new RegExp(`no readings: .*${ours}`));
         await until('its refusal', () => core.program.said.includes(`renderer ${name}: refused: ${theirs}`));
-        await sleep(2500); // waits until the refused renderer has tried to connect several times
+        await until('more tries', async () => await renderer.metric('plantcast_core_refused_total') >= 3);
         assert.equal(core.program.said.split(`renderer ${name}: refused`).length, 2, 'the refusal is logged once');
         assert.ok(Object.values(await renderer.tags()).every(({ value }) => value === null));
         assert.equal(await renderer.metric(`plantcast_core_up{core="${core.url}"}`), 0);
@@ -255,10 +258,14 @@ test('`plantcast drain` sends a daemon\'s sessions to another node, and signals 
 const canMount = process.getuid() === 0 && spawnSync('unshare', ['--mount', 'true']).status === 0;
 const alone = { ...options, skip: options.skip || (canMount ? false : 'nothing can be mounted here') };
 
-test('each address of a core\'s host name is tried, and each failure is logged once', alone, async () => {
+test('each address of a core\'s host name is tried, and each failure is logged once', alone, async (t) => {
     const hosts = join(nodes.plant.folder, 'hosts'), said = /no readings/g;
     writeFileSync(hosts, '127.0.0.9 core.test\n127.0.0.1 core.test\n');
-    const dead = 'ws://127.0.0.1:9', start = (...urls) => {
+    let tries = 0;
+    const stranger = createServer((socket) => { tries++; socket.destroy(); });
+    await new Promise((done) => stranger.listen(0, '127.0.0.1', done));
+    t.after(() => stranger.close());
+    const start = (...urls) => {
         const program = new Program('plantcastd', [nodes.plant.file, '--role', 'render', '--port', '0', '--core-token-file',
             nodes.rendererFile, ...urls.flatMap((url) => ['--core', url])], {},
         ['unshare', '--mount', 'sh', '-c', `mount --bind ${hosts} /etc/hosts && exec "$@"`, 'sh']);
@@ -270,10 +277,10 @@ test('each address of a core\'s host name is tried, and each failure is logged o
     await good.line(/receiving readings/);
     await good.stop();
     await host.stop();
-    const bad = start('ws://core.test:9', dead, `ws://core.test:${nodes.plant.modbusPort}`);
+    const bad = start('ws://core.test:9', `ws://127.0.0.1:${stranger.address().port}`, `ws://core.test:${nodes.plant.modbusPort}`);
     await bad.line(/ready http/);
     await until('each to be named', () => (bad.said.match(said)?.length ?? 0) >= 3, 90, () => bad.said);
-    await sleep(5000); // it retries several times
+    await until('more tries', () => tries >= 3);
     assert.ok(bad.said.match(said).length <= 5, bad.said);
     await bad.stop();
 });
