@@ -137,6 +137,9 @@ struct field_sensor {
    these parameters. *radius_m receives the radius R of Algorithm 1 (Kim & Suh). Returns the number of inputs; 0: no sensor
    contributes. The caller frees *out (mem_free). */
 size_t field_sensors(struct field *field, int asset, const struct field_params *params, struct field_sensor **out, float *radius_m);
+/* Returns the distances in metres from the place to the sensors of field_sensors(), in their order, as the field measures them
+   (layout_distances()). NULL: no sensor. The caller frees them (mem_free). */
+float *field_distances_at(struct field *field, int asset, const struct field_params *params, const struct field_place *place);
 /* Fills *out with the sensors and readings from which renderers evaluate the field at each pixel, as used by the last
    field_scalars_of() with these parameters. out->count is 0 if the field must be interpolated between vertices, or is the same
    everywhere. The caller frees the sensors with pixel_field_finish(). */

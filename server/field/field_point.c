@@ -126,3 +126,18 @@ bool field_at(struct field *field, int asset, const struct field_params *params,
     out->uncertain |= out->drawn_error > 0;
     return true;
 }
+
+float *field_distances_at(struct field *field, int asset, const struct field_params *params, const struct field_place *place)
+{
+    struct field_params room;
+    params = field_params_of(field, asset, params, &room);
+    const struct field_layout *layout = field_layout(field, asset, params);
+    if (!layout)
+        return NULL;
+    struct single_point point;
+    single_point_init(&point, layout, place);
+    float *distances_m = mem_array(layout->sensor_count, sizeof(*distances_m)), scratch;
+    for (size_t i = 0; i < layout->sensor_count; i++)
+        distances_m[i] = *layout_distances(&point.layout, params->distance, i, 0, 1, &scratch);
+    return distances_m;
+}

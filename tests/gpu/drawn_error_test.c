@@ -37,6 +37,7 @@ struct drawn_error_tally {
     double worst_evaluated;
     /* largest error of unmarked pixels after subtracting how much the true value changes within SNAP_PX */
     double worst_placed;
+    double worst_away_m; /* largest error of the distances to sensors that picks state */
     /* soft: number of pixels of the software renderer that were compared; soft_off: those with another colour; flags_off:
        number of picks whose flags differ from those of pixel_field_at() */
     int soft, soft_off, flags_off;
@@ -106,6 +107,22 @@ static void compare_evaluated(const struct drawn_error_case *site, const struct 
     tally->worst_evaluated = fmax(tally->worst_evaluated, fabs((double)value.value - pick->value) / (view->range_max - view->range_min));
 }
 
+/* Returns the largest error in metres of the pick's distances to sensors. */
+static double distance_off(const struct drawn_error_case *site, const struct pick *pick)
+{
+    const struct scene_asset *asset = &site->scene->assets[pick->asset];
+    double most_m = 0;
+    for (size_t i = 0; i < asset->sensor_count; i++) {
+        double away_m = 0;
+        for (int c = 0; c < 3; c++)
+            away_m = hypot(away_m, pick->position_m[c] - asset->sensors[i].surface_m[c]);
+        for (int n = 0; n < pick->nearest_count; n++)
+            if (pick->nearest[n].tag == asset->sensors[i].tag)
+                most_m = fmax(most_m, fabs(pick->nearest[n].distance_m - away_m));
+    }
+    return most_m;
+}
+
 /* Returns the largest change of the true value, as a share of the range, between a pixel's centre and points SNAP_PX away. */
 static double change_around(const struct drawn_error_case *site, const struct view *view, int x, int y, double truth)
 {
@@ -137,6 +154,7 @@ static void compare_pixel(const struct drawn_error_case *site, const struct view
         return;
     }
     compare_evaluated(site, view, &pick, tally);
+    tally->worst_away_m = fmax(tally->worst_away_m, distance_off(site, &pick));
     double drawn = fabs((double)pixel[0] - (truth - view->range_min) / range);
     bool marked = pixel[2] > 0.5f || pixel[1] > 0.5f;
     tally->compared++;
@@ -251,14 +269,17 @@ static void expect_truth(const char *name, const struct drawn_error_tally *tally
                   "marked %d, %d of them right\n",
                   name, tally->compared, tally->no_data, tally->other, tally->worst_pick / STEP, tally->worst_drawn / STEP,
                   tally->worst_marked / STEP, tally->marked, tally->marked_right);
-    print_message("# beyond the bound that picks tell: %.2f steps; without a GPU %d pixels, %d of another colour\n",
-                  tally->worst_beyond / STEP, tally->soft, tally->soft_off);
+    print_message(
+        "# beyond the bound that picks tell: %.2f steps; without a GPU %d pixels, %d of another colour; distances off by %.4f m\n",
+        tally->worst_beyond / STEP, tally->soft, tally->soft_off, tally->worst_away_m);
     assert_true(tally->compared > 500);
     assert_true(tally->worst_pick <= STEP);
     /* the limit is 2 % above one colour step, because a pixel's value is a float and belongs to a slightly different point than
        the pick's value */
     assert_true(tally->worst_drawn <= 1.02 * STEP);
     assert_true(tally->worst_beyond <= 0.1 * STEP);
+    /* a sensor's stored distances begin at the nearest vertex */
+    assert_true(tally->worst_away_m <= 0.02);
 }
 
 /* With straight-line distances the value is computed exactly for each pixel, so no pixel may be marked uncertain. */

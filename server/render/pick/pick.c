@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "protocol/asset_distance.h"
 #include "render/pick/markers.h"
 #include "scene/raycast.h"
 
@@ -102,22 +101,6 @@ static void find_sensor(const struct pick_spot *spot, const struct trial *trial,
 
 /* --- value of the field at the pixel ----------------------------------------------------------------------------------------- */
 
-static double distance_of(const struct pick_spot *spot, const struct field_sensor *sensor, const double place_file_m[3])
-{
-    const struct asset_view *file = &spot->scene->assets[spot->hit.asset].file->view;
-    double sum = 0;
-    if (spot->view->field.distance == DISTANCE_EUCLIDEAN || (!sensor->in_file && !sensor->along_m)) {
-        for (int i = 0; i < 3; i++)
-            sum += pow(place_file_m[i] - (double)sensor->surface_m[i], 2);
-        return sqrt(sum);
-    }
-    for (int k = 0; k < 3; k++)
-        if (spot->hit.weights[k] != 0)
-            sum += spot->hit.weights[k] * (double)(sensor->in_file ? asset_distance_m(file, sensor->column, spot->hit.corners[k])
-                                                                   : sensor->along_m[spot->hit.corners[k]]);
-    return sum;
-}
-
 static void insert(struct pick *out, const struct pick_sensor *sensor)
 {
     int at = out->nearest_count;
@@ -130,25 +113,23 @@ static void insert(struct pick *out, const struct pick_sensor *sensor)
     out->nearest[at] = *sensor;
 }
 
-static void read_sensors(const struct pick_spot *spot, struct field *field, const struct field_params *params, struct pick *out)
+static void read_sensors(const struct pick_spot *spot, struct field *field, const struct field_params *params,
+                         const struct field_place *place, struct pick *out)
 {
-    const struct scene_asset *asset = &spot->scene->assets[spot->hit.asset];
     struct field_sensor *sensors = NULL;
-    double place_m[3] = { 0 };
     float radius_m;
-    for (int k = 0; k < 3; k++)
-        for (int i = 0; i < 3; i++)
-            place_m[i] += spot->hit.weights[k] * (double)asset->file->view.positions_m[spot->hit.corners[k]][i];
     size_t count = field_sensors(field, spot->hit.asset, params, &sensors, &radius_m);
+    float *distances_m = field_distances_at(field, spot->hit.asset, params, place);
     for (size_t i = 0; i < count; i++) {
         int tag = sensors[i].tag;
         const struct reading *reading = &spot->snapshot->readings[tag];
-        double distance_m = distance_of(spot, &sensors[i], place_m);
+        double distance_m = (double)distances_m[i];
         if (sensors[i].usable && distance_m <= params->reach_m && isfinite(distance_m))
             insert(out,
                    &(struct pick_sensor){ .tag = tag, .distance_m = distance_m, .value = reading->value, .quality = reading->quality });
     }
     out->assumed = field_is_assumed(field, spot->hit.asset, params);
+    mem_free(distances_m);
     mem_free(sensors);
 }
 
@@ -174,7 +155,7 @@ static void read_place(struct pick_spot *spot, struct field *field, struct pick 
     out->uncertain = point.uncertain;
     out->value = point.value;
     out->drawn_error = point.drawn_error;
-    read_sensors(spot, field, &params, out);
+    read_sensors(spot, field, &params, &place, out);
     if (is_measured(spot, &params, out))
         out->state = PICK_MEASURED;
 }
