@@ -8,7 +8,7 @@ import { after, before, test } from 'node:test';
 import { long } from './support/promise.mjs';
 import { kill, missingTwoCores, sleep, TwoCores, until } from './support/two_cores.mjs';
 
-const skip = missingTwoCores(), options = { skip, timeout: 240000 }, CUT_S = 6, RETURNS = 5;
+const skip = missingTwoCores(), options = { skip, timeout: 240000 }, PEAKS = 4, RETURNS = 5;
 const READ = /history: read \d+ points from PostgreSQL, covering the \d+ s in which another core led/g;
 let two;
 
@@ -23,12 +23,13 @@ const valuesOf = async (core, from_us, to_us) => {
 test('points recorded during a cut are read although the plant is reloaded meanwhile', options, async (t) => {
     const core = await two.leader(), other = two.other(core), from_us = Date.now() * 1000;
     await other.toOther.cut();
-    for (let i = 0; i < CUT_S * 2; i++) { // the readings change twice a second during the cut, so that the other core misses these points
-        await two.plant.tell(`set TI-1 ${i % 2 ? 71 : 31}`);
-        await sleep(500);
+    for (let i = 0; i < 2 * PEAKS; i++) { // readings that the other core misses
+        const value = i % 2 ? 31 : 71;
+        await two.plant.tell(`set TI-1 ${value}`);
+        await until(`TI-1 ${value}`, async () => (await core.node.tags())['TI-1'].value === value);
     }
-    await until('all being sent', async () => await core.node.metric('plantcast_postgres_waiting_points') === 0);
-    await sleep(2000);
+    const sent = `SELECT count(*) FROM plantcast.history WHERE tag = 'TI-1' AND value = 71 AND time > to_timestamp(${from_us / 1e6})`;
+    await until('all being sent', () => Number(two.server.ask(sent)[0][0]) >= PEAKS);
     const to_us = Date.now() * 1000;
     await two.takeOver(t, core, kill(core, 'SIGKILL'));
     change(two.file, 100, 101);
@@ -36,7 +37,7 @@ test('points recorded during a cut are read although the plant is reloaded meanw
     await other.program.line(/reload: configuration/);
     assert.equal(other.program.said.match(READ), null, 'the reload came before the points were read');
     await until('the points of then', async () => (await valuesOf(other, from_us, to_us))
-        .filter((value) => value === 71).length >= CUT_S - 2, 60);
+        .filter((value) => value === 71).length >= PEAKS, 60);
     await other.toOther.mend();
     await two.restart(core);
     await two.followed(other);

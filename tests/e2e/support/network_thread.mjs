@@ -4,19 +4,22 @@
 import { connect, createServer } from 'node:net';
 import { isMainThread, parentPort, Worker } from 'node:worker_threads';
 import { CuttableLink } from './postgres_server.mjs';
+import { until } from './until.mjs';
 
 // current time in ms on a time base that is the same in all threads; performance.now() alone differs by thread
 const now = () => performance.timeOrigin + performance.now();
 
-// Opens the tap: relays connections to the device and records in pollers[] the times of the first and last request of each.
+// Opens the tap: relays connections to the device and records in pollers[], for each connection, the number of its requests, the times
+// of the first and last one, and whether it has ended.
 async function openTap(pollers, port, devicePort) {
     const server = createServer((near) => {
         const far = connect(devicePort, '127.0.0.1');
         let poller = null;
         near.on('data', (bytes) => {
             if (!poller)
-                pollers.push(poller = { first: now() });
+                pollers.push(poller = { first: now(), requests: 0, ended: false });
             poller.last = now();
+            poller.requests++;
             far.write(bytes);
         });
         far.on('data', (bytes) => near.write(bytes));
@@ -24,6 +27,10 @@ async function openTap(pollers, port, devicePort) {
             socket.on('error', () => {});
             socket.on('close', () => { near.destroy(); far.destroy(); });
         }
+        near.on('close', () => {
+            if (poller)
+                poller.ended = true;
+        });
     });
     await new Promise((done) => server.listen(port, '127.0.0.1', done));
 }
@@ -80,6 +87,15 @@ export class Network {
     async longestPause(since) {
         const turns = await this.ask('pollers');
         return Math.max(0, ...turns.slice(1).map(({ first }, i) => (first >= since ? first - turns[i].last : 0)));
+    }
+    // Waits until the device has been polled `count` more times.
+    async polled(count) {
+        const requests = async () => (await this.ask('pollers')).reduce((sum, one) => sum + one.requests, 0), from = await requests();
+        await until(`${count} more polls`, async () => await requests() >= from + count);
+    }
+    // Waits until at most one connection to the device is open: the connections of former leaders send nothing more.
+    onePoller() {
+        return until('one connection to the device', async () => (await this.ask('pollers')).filter(({ ended }) => !ended).length <= 1);
     }
     async pollerCount() { return (await this.ask('pollers')).length; }
     now() { return now(); }

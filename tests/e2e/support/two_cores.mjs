@@ -169,7 +169,7 @@ ${more}`);
         this.takeOvers = (this.takeOvers ?? 0) + 1;
         await until(`${other.name} leads`, () => this.ready(other));
         await until('readings there', async () => (await other.node.tags())['TI-1'].quality_name === 'Good');
-        await sleep(300);
+        await this.network.onePoller();
         const pause_ms = await this.network.longestPause(since);
         assert.deepEqual(await this.network.overlaps(), []);
         assert.ok(pause_ms > 0);
