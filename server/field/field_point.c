@@ -40,6 +40,12 @@ static double error_near(const struct field_state *state, const struct field_pla
     return most > state->error_limit * state->error_scale ? most : 0;
 }
 
+static void point_init(struct layout_point *point, const struct field_layout *layout, const struct field_place *place)
+{
+    layout_point_init(point, layout, place->corners,
+                      (const float[3]){ (float)place->parts[0], (float)place->parts[1], (float)place->parts[2] });
+}
+
 static void point_distance(const struct field_state *state, const struct layout_point *point, struct field_point *out)
 {
     float room;
@@ -115,8 +121,7 @@ bool field_at(struct field *field, int asset, const struct field_params *params,
     if (count > 0)
         point_drawn(scalars, place, out);
     struct layout_point point;
-    layout_point_init(&point, state->layout, place->corners,
-                      (const float[3]){ (float)place->parts[0], (float)place->parts[1], (float)place->parts[2] });
+    point_init(&point, state->layout, place);
     if (params->show == SHOW_DISTANCE) {
         point_distance(state, &point, out);
         return true;
@@ -134,8 +139,8 @@ float *field_distances_at(struct field *field, int asset, const struct field_par
     const struct field_layout *layout = field_layout(field, asset, params);
     if (!layout)
         return NULL;
-    struct single_point point;
-    single_point_init(&point, layout, place);
+    struct layout_point point;
+    point_init(&point, layout, place);
     float *distances_m = mem_array(layout->sensor_count, sizeof(*distances_m)), scratch;
     for (size_t i = 0; i < layout->sensor_count; i++)
         distances_m[i] = *layout_distances(&point.layout, params->distance, i, 0, 1, &scratch);
