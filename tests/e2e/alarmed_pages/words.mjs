@@ -170,6 +170,58 @@ test('titles and current values of the alarm list and the journal are complete, 
     }
 });
 
+// Sizes of tablets in CSS pixels.
+const TABLETS = [[1024, 768], [1280, 800], [768, 1024], [820, 1180], [1180, 820]];
+// Writes long numbers into the first row of a table. Returns cells that overlap or leave the row, how many rows the list shows at
+// once, buttons that are smaller than a finger, and columns on which a tap does not fly to the tag.
+const rowFaults = (page, tab) => page.evaluate((name) => {
+    const row = document.querySelector(`#${name}-list tr`), box = (element) => element.getBoundingClientRect(), area = box(row);
+    const cells = [...row.cells].filter((cell) => box(cell).width > 0 && cell.dataset.col !== 'pick'), col = ({ dataset }) => dataset.col;
+    for (const [column, text] of [['then', '200.00'], ['now', '200.00'], ['limit', '200.00']])
+        row.querySelector(`[data-col=${column}]`).firstChild.data = text;
+    row.querySelector('[data-col=now] small').textContent = 'mm/s';
+    const apart = (a, b) => a.right <= b.left + 0.5 || b.right <= a.left + 0.5 || a.bottom <= b.top + 0.5 || b.bottom <= a.top + 0.5;
+    const inside = ({ left, right, top, bottom }) => left >= area.left && right <= area.right && top >= area.top && bottom <= area.bottom;
+    const hits = (cell) => document.elementFromPoint(box(cell).left + box(cell).width / 2, box(cell).top + box(cell).height / 2);
+    return {
+        over: cells.flatMap((a, i) => cells.slice(i + 1).filter((b) => !apart(box(a), box(b))).map((b) => `${col(a)} ${col(b)}`)),
+        out: cells.filter((cell) => !inside(box(cell))).map(col),
+        rows: Math.floor(document.querySelector(`#${name}-list`).closest('.scroll').clientHeight / area.height),
+        small: [row, ...row.querySelectorAll('[data-col=do] button')].filter((e) => box(e).height < 43.5 || box(e).width < 43.5).length,
+        dead: cells.filter((cell) => col(cell) !== 'do' && !hits(cell)?.closest('.alarm-go')).map(col),
+    };
+}, tab);
+
+test('on tablets a row of the alarm list or the journal shows all columns and is finger-sized', options, async () => {
+    for (const lang of ['de', 'ko', 'en']) {
+        await withPage(`${url}?lang=${lang}`, TABLET, async (page) => {
+            await waitForPicture(page);
+            await page.locator('#alarm-strip').tap();
+            for (const tab of ['alarms', 'journal']) {
+                await page.locator(`#${tab}-tab`).tap();
+                await page.locator(`#${tab}-list tr [data-col=do] button`).first().waitFor();
+                for (const [width, height] of TABLETS) {
+                    const name = `${lang}, ${tab}, ${width}x${height}`, faults = () => rowFaults(page, tab);
+                    await resize(page, { width, height });
+                    await becomes(async () => ({ ...await faults(), rows: 0 }), { over: [], out: [], rows: 0, small: 0, dead: [] },
+                        name, 20);
+                    await becomes(() => hiddenColumns(page, tab), { hidden: [], cut: [], untitled: false, scrolls: false }, name, 20);
+                    const { rows } = await faults();
+                    assert.ok(rows >= 6, `${name}: the list shows ${rows} rows at once`);
+                    await shoot(page, `tablet-${lang}-${tab}-${width}`);
+                }
+            }
+            await page.locator('#alarms-tab').tap();
+            await showLater(page);
+            for (const [width, height] of TABLETS) {
+                await resize(page, { width, height });
+                await becomes(() => hiddenColumns(page, 'alarms'), { hidden: [], cut: [], untitled: false, scrolls: false },
+                    `${lang}, ${width}x${height}, an alarm of an earlier day`, 20);
+            }
+        });
+    }
+});
+
 test('on a phone held sideways, rows of alarms are low, and buttons are finger-sized', options, async () => {
     for (const lang of ['ko', 'de', 'en']) {
         const { page, errors, close } = await openPage(`${url}?lang=${lang}`, { ...PHONE, viewport: { width: 844, height: 390 } });

@@ -116,6 +116,8 @@ const flyButton = (tag, name, fly) => make('button', { type: 'button', class: 'a
 export function rowOf(session, row, fresh, { look, pick, state, note, also = '', buttons, fly }) {
     const { tag, kind, priority } = row, name = make('b', {}, tag.name);
     const cell = (col, title, ...content) => make('td', { 'data-col': col, title }, ...content);
+    // cells with numbers, which show their column's name where there is no room for column titles (alarms.css)
+    const named = (col, title, ...content) => make('td', { 'data-col': col, title, 'data-name': say(`column.${col}`) }, ...content);
     const about = [note, row.about, also].filter(Boolean);
     const [value, limit] = [row.value, row.limit].map((number) => thenTexts(session.model, row, number));
     const element = make('tr', look, cell('pick', null, pick), cell('state', state, state),
@@ -125,8 +127,8 @@ export function rowOf(session, row, fresh, { look, pick, state, note, also = '',
         cell('kind', null, say(`kind.${kind}`)), cell('area', row.area, row.area),
         cell('about', about.join(' · '), ...about.flatMap((part, i) =>
             [i > 0 ? ' · ' : null, part === note ? make('em', {}, part) : part])),
-        cell('us', ...timeCell(session, row.us)), cell('then', value[1], value[0]), cell('now'),
-        cell('limit', limit[1], limit[0]), cell('since'), cell('do', null, ...buttons));
+        cell('us', ...timeCell(session, row.us)), named('then', value[1], value[0]), named('now'),
+        named('limit', limit[1], limit[0]), cell('since'), cell('do', null, ...buttons));
     refreshCells(session, element, row, fresh);
     return element;
 }
