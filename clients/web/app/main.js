@@ -20,7 +20,8 @@ const WATCH_AFTER_MS = 5000; // delay in milliseconds before the watchdog is loa
 // pictures.
 const MANY_PICTURES = 30;
 // names of the commands (input/commands.js) that main.js passes to modules loaded on first use
-const COMMANDS = ['selectTag', 'showTag', 'flyToTag', 'fitView', 'selectAsset', 'showTrend', 'addTrend', 'showAsset'];
+const COMMANDS = ['selectTag', 'showTag', 'flyToTag', 'fitView', 'selectAsset', 'showTrend', 'addTrend', 'showAsset',
+    'makeRoom'];
 
 const selection = { tag: address.tag, hover: null };
 const modules = new LazyModules(page, tell);

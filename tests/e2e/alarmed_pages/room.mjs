@@ -237,6 +237,65 @@ test('after a resize, the old picture stays undistorted and its marks stay in pl
     });
 });
 
+// Windows with little room next to a panel, and tablets.
+const LITTLE = sweep([[1024, 600], [1024, 768], [1100, 700], [1199, 640], [1280, 640], [768, 1024], [820, 1180], [740, 560]],
+    [[1024, 600], [768, 1024], [1280, 640]]);
+// Returns whether the card is visible, and the faults of its position: what it overlaps, and whether it leaves the picture.
+const cardOf = (page, id = 'card') => page.evaluate((name) => {
+    const card = document.getElementById(name), box = (element) => element.getBoundingClientRect(), a = box(card);
+    const isSeen = card.checkVisibility({ visibilityProperty: true }), picture = box(document.getElementById('viewport'));
+    const others = '.panel.open, .display.open, .more.open, .legend, .alarms, .engineer, .assets, .toolbar, .lower, #split-bar';
+    const over = [...document.querySelectorAll(others)].filter((other) => other.checkVisibility()).filter((other) => {
+        const b = box(other);
+        return isSeen && a.left < b.right - 1 && b.left < a.right - 1 && a.top < b.bottom - 1 && b.top < a.bottom - 1;
+    }).map((other) => other.id || other.className);
+    const leaves = a.left < picture.left - 1 || a.top < picture.top - 1 || a.right > picture.right + 1 || a.bottom > picture.bottom + 1;
+    return { isSeen, over: isSeen && leaves ? [...over, 'the edge of the picture'] : over };
+}, id);
+
+test('a card is never under a panel; a pressed sensor\'s card replaces a panel that leaves it no room', options, async () => {
+    const panels = { picture: '#picture-panel.open', views: '#views.open', display: '#display.open', more: '#more.open' };
+    const lists = { none: null, alarms: '#alarm-strip', engineer: '#engineer-toggle' };
+    const seen = { isSeen: true, over: [] };
+    for (const [width, height] of LITTLE) {
+        await withPage(`${url}?lang=de`, { viewport: { width, height } }, async (page) => {
+            await waitForPicture(page);
+            await arrive(page);
+            const select = (tag) => page.evaluate((name) => {
+                const { selectTag, session } = globalThis.plantcast;
+                selectTag(name && session.model.tag(name));
+            }, tag);
+            for (const [list, opener] of Object.entries(lists)) {
+                if (opener)
+                    await page.locator(opener).click();
+                await select('TI-1');
+                await page.locator('#card').waitFor();
+                for (const [panel, element] of Object.entries(panels)) {
+                    const name = `${width}x${height}, ${list}, ${panel}`, button = page.locator(`#${panel}-toggle`);
+                    if (!await button.isVisible())
+                        continue;
+                    await becomes(() => cardOf(page), seen, `before ${name}`, 20);
+                    await button.click();
+                    await page.locator(element).waitFor();
+                    await becomes(async () => (await cardOf(page)).over, [], name, 20);
+                    await shoot(page, `card-${name.replaceAll(', ', '-')}`);
+                    if (list !== 'engineer') { // the engineering panel itself takes presses on sensors
+                        await select(null);
+                        await page.evaluate(() => {
+                            const { handlers, overlay, session } = globalThis.plantcast, marker = overlay.marker(session.model.tag('TI-1'));
+                            handlers.click(marker.x, marker.y, 'mouse');
+                        });
+                        await becomes(() => cardOf(page), seen, `${name}, after a press on the sensor`, 20);
+                    }
+                    if (await page.locator(element).isVisible())
+                        await button.click();
+                }
+                await select(null);
+            }
+        });
+    }
+});
+
 // Makes the browser observe sizes in CSS pixels only, as Safari does.
 function observeAsSafari() {
     const { observe } = ResizeObserver.prototype;

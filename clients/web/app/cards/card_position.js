@@ -5,7 +5,9 @@ import { projector } from '../../core/camera.js';
 import { halves } from '../../core/split_view.js';
 import { byId } from '../common/dom.js';
 
-const AWAY_PX = 16, RIM_PX = 8, TALLEST_PX = 280;
+const AWAY_PX = 16, RIM_PX = 8, TALLEST_PX = 280, LEAST_PX = 200; // LEAST_PX: width below which a card is not readable
+// PANELS: panels that lie over the picture's right side; BARS: bars along its lower edge
+const PANELS = ':is(.panel, .display, .more).open', BARS = '#moment:not([hidden]), .split-bar:not([hidden])';
 const LEGEND_PX = 12; // distance of the legend from the picture's edge
 // RING_PX: half the width of an alarm ring; RING_COST: a covered ring counts as this many covered markers
 const RING_PX = 14, RING_COST = 3;
@@ -52,27 +54,48 @@ export function placeInPicture({ picture, shown }, { width, height }, position, 
     return at ? [((part.left + at[0]) * width) / picture.shownWidth, (at[1] * height) / picture.fullHeight] : null;
 }
 
-// Returns the left and right edge of the part of the picture that the legend leaves free. If an open panel has moved the legend
-// to the left edge (common/panel.css), the part ends at the panel.
-function besideOf({ offsetLeft: left, offsetWidth: wide }, width) {
-    const panel = parseFloat(getComputedStyle(byId('legend')).getPropertyValue('--beside'));
-    return left <= LEGEND_PX ? [left + wide, width - (panel || 0)] : [0, left];
+// Returns the left and right edge of the part of the picture that the legend and the open panels leave free, and the lower edge of a legend
+// that lies across the top of the picture. An open panel may have moved the legend to the left edge (common/panel.css).
+function freeBeside(width) {
+    const legend = byId('legend'), { offsetLeft: left, offsetWidth: wide } = legend;
+    const lies = wide > width / 2, free = { left: 0, right: width };
+    if (!legend.hidden && wide > 0 && !lies)
+        Object.assign(free, left <= LEGEND_PX ? { left: left + wide } : { right: left });
+    const picture = byId('viewport').getBoundingClientRect();
+    for (const box of [...document.querySelectorAll(PANELS)].map((panel) => panel.getBoundingClientRect()))
+        if (box.left < picture.right && box.right > picture.left && box.top < picture.bottom && box.bottom > picture.top)
+            free.right = Math.min(free.right, box.left - picture.left);
+    return { left: free.left + RIM_PX, right: free.right - RIM_PX, below: lies ? legend.offsetTop + legend.offsetHeight : 0 };
 }
 
-// Positions the card next to the point `at` ([x, y] in CSS pixels; null: in a corner), clear of the status banner, the legend
-// and the name of the alarm whose moment is shown. Leaves other visible markers of `overlay` uncovered where there is room.
+// Returns whether the picture has room for a card between the legend and the open panels.
+export function hasRoom({ width }) {
+    const { left, right } = freeBeside(width);
+    return right - left >= LEAST_PX;
+}
+
+// Positions the card next to the point `at` ([x, y] in CSS pixels; null: in a corner), clear of the status banner, the legend, open panels,
+// the bar of a split view and the name of the alarm whose moment is shown. Leaves other visible markers of `overlay` uncovered where there
+// is room. Hides the card while there is no room for it. On phones, the card is a sheet (common/sheet.css), and has no position.
 const places = new WeakMap(); // card's element -> { of (the object that the card describes), place (the card's last position) }
 export function standBeside(element, { width, height }, at, overlay, of) {
-    const banner = byId('banner'), legend = byId('legend'), lies = legend.offsetWidth > width / 2;
-    const above = banner.hidden ? 0 : banner.offsetTop + banner.offsetHeight, strip = lies ? legend.offsetTop + legend.offsetHeight : 0;
-    const [from, to] = lies || legend.hidden || legend.offsetLeft <= 0 ? [0, width] : besideOf(legend, width);
-    const moment = byId('moment'), most = moment && !moment.hidden && moment.offsetTop > above + TALLEST_PX ? moment.offsetTop : height;
-    const free = { left: from + RIM_PX, top: RIM_PX + Math.max(above, strip), right: to - RIM_PX, bottom: most - RIM_PX };
+    Object.assign(element.style, { maxWidth: '', maxHeight: '' });
+    element.classList.remove('no-room');
+    if (!byId('viewport').contains(element))
+        return;
+    const banner = byId('banner'), { left, right, below } = freeBeside(width);
+    const above = banner.hidden ? 0 : banner.offsetTop + banner.offsetHeight;
+    const low = [...document.querySelectorAll(BARS)].map(({ offsetTop }) => offsetTop).filter((top) => top > above + TALLEST_PX);
+    const free = { left, top: RIM_PX + Math.max(above, below), right, bottom: Math.min(height, ...low) - RIM_PX };
+    if (right - left < LEAST_PX) {
+        element.classList.add('no-room');
+        return;
+    }
     const marks = overlay.markers.filter(({ tag, occluded, alarm }) => tag !== of && (alarm || !occluded)).map((marker) => {
         const { x, y } = overlay.placeOf(marker);
         return [x, y, Boolean(marker.alarm)];
     });
-    element.style.maxHeight = '';
+    element.style.maxWidth = `${right - left}px`;
     const last = places.get(element), card = { wide: element.offsetWidth, tall: element.offsetHeight };
     const place = cardPlace(card, free, at, marks, last?.of === of ? last.place : null);
     places.set(element, { of, place });

@@ -11,9 +11,10 @@ import { closeButton, fill } from '../common/widgets.js';
 const SAME_M = 0.05;
 
 export class Place {
-    // showAsset(how, asset) hides an asset, makes it transparent or isolates it (hides all others).
-    constructor({ session, viewport, overlay, showAsset }) {
-        Object.assign(this, { session, viewport, overlay, showAsset });
+    // showAsset(how, asset) hides an asset, makes it transparent or isolates it (hides all others). makeRoom() closes panels that leave no
+    // room for the card.
+    constructor({ session, viewport, overlay, showAsset, makeRoom }) {
+        Object.assign(this, { session, viewport, overlay, showAsset, makeRoom });
         this.element = byId('place');
         new ResizeObserver(() => this.show()).observe(this.element);
         this.picked = null;
@@ -70,8 +71,10 @@ export class Place {
         this.element.hidden = !this.picked;
         if (this.picked)
             this.build();
-        if (this.picked && !again)
+        if (this.picked && !again) {
             this.session.setParams({ selected: this.picked.asset });
+            this.makeRoom();
+        }
         this.show();
     }
 

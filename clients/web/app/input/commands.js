@@ -6,6 +6,7 @@ import { travel } from '../../core/requests.js';
 import { byId, phone } from '../common/dom.js';
 import { store } from '../common/storage.js';
 import { wear } from '../common/theme.js';
+import { hasRoom } from '../cards/card_position.js';
 import { bandsOf } from '../toolbar/toolbar.js';
 
 // factor on the camera's distance from an asset at the end of a flight to it, so that the picture has a margin around the asset
@@ -41,7 +42,7 @@ function changeTheme() {
 }
 
 // Returns all commands by name: those called by the page, and those triggered by keys (core/keys.js).
-function commandsOf({ session, modules, selection, overlay, saveAddress, refresh }) {
+function commandsOf({ session, viewport, modules, selection, overlay, saveAddress, refresh }) {
     function selectTag(tag) {
         selection.tag = tag?.name ?? null;
         selection.hover = null;
@@ -125,10 +126,27 @@ function commandsOf({ session, modules, selection, overlay, saveAddress, refresh
         }
         const tag = tagAt(x, y, kind);
         selectTag(tag);
-        if (tag)
-            modules.there('place')?.close();
-        else
+        if (!tag) {
             openPlace(x, y, session.camera);
+            return;
+        }
+        modules.there('place')?.close();
+        makeRoom();
+    }
+
+    // Closes the panels below the toolbar.
+    function closePanels() {
+        for (const one of ['display', 'more'])
+            modules.there('toolbarOverflow')?.[one].set(false);
+        for (const name of ['views', 'picture'])
+            modules.there(name)?.close();
+    }
+
+    // Closes the panels if they leave no room for the card of a sensor or point that the user has pressed. On a phone, panels are sheets,
+    // which cover the card's sheet.
+    function makeRoom() {
+        if (phone.matches || !hasRoom(viewport))
+            closePanels();
     }
 
     // Opens the card of a clicked point, unless the camera has moved since the click: another point is under the pointer then.
@@ -169,7 +187,7 @@ function commandsOf({ session, modules, selection, overlay, saveAddress, refresh
     }
 
     return {
-        selectTag, showTag, flyToTag, selectAsset, fitView, click, point, group,
+        selectTag, showTag, flyToTag, selectAsset, fitView, click, makeRoom, point, group,
         show: (value) => session.setParams(showParams(value)),
         ramp: (value) => session.setParams(rampParams(value)),
         showTrend: (tag) => modules.use('trends', (trends) => trends.only(tag)),
@@ -213,10 +231,7 @@ function commandsOf({ session, modules, selection, overlay, saveAddress, refresh
         theme: () => session.setParams({ backdrop: changeTheme() }),
         escape() {
             modules.giveUp();
-            for (const one of ['display', 'more'])
-                modules.there('toolbarOverflow')?.[one].set(false);
-            for (const name of ['views', 'picture'])
-                modules.there(name)?.close();
+            closePanels();
             const [alarms, measure, place] = ['alarms', 'measure', 'place'].map((name) => modules.there(name));
             if (alarms?.open)
                 alarms.setOpen(false);

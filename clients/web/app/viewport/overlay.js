@@ -210,8 +210,10 @@ export class Overlay {
         return all;
     }
 
-    // Returns labels for all visible markers and all alarm rings, in the order of tags. The selected tag has a card instead.
+    // Returns labels for all visible markers and all alarm rings, in the order of tags. The selected tag has a card instead, if there is
+    // room for it (cards/card_position.js).
     labels() {
+        const hasCard = !document.querySelector('#card.no-room');
         const marks = this.markers.filter((marker) => !marker.occluded || marker.alarm);
         const inSight = marks.filter(({ occluded }) => !occluded);
         marks.sort((a, b) => a.tag.index - b.tag.index || a.half - b.half);
@@ -226,7 +228,8 @@ export class Overlay {
                 : this.parts(marker, named || onSelected || marker.origin || alarm !== null);
             const width = this.lineWidth(parts);
             const bad = reading.quality === 'bad', unseen = (marker.occluded || marker.distance_m === null) && !alarm;
-            const silent = unseen || this.isChosen(tag) || (bad && tooMany && !alarm) || ((this.calm || short) && !alarm && !bad);
+            const silent = unseen || (hasCard && this.isChosen(tag)) || (bad && tooMany && !alarm) ||
+                ((this.calm || short) && !alarm && !bad);
             const rank = silent ? -1 : alarm ? RANK_RING : bad || marker.origin ? 2 : reading.quality !== 'good' || onSelected ? 1 : 0;
             const { x, y, depth, half } = marker;
             const { slot: held, callout } = this.places.get(id) ?? {}, ring = alarm !== null;
