@@ -55,7 +55,8 @@ const tooSmall = (page) => page.evaluate(() => [...document.querySelectorAll(
     .map(({ what, box }) => `${what}: ${box.width}x${box.height}`));
 
 // Returns the controls of the toolbar that a thumb does not reach on a phone held upright in one hand: those in the upper half.
-const beyondThumb = (page) => page.evaluate(() => [...document.querySelectorAll('.actions button, #groups label, #assets-toggle')]
+const beyondThumb = (page) => page.evaluate(() => [...document.querySelectorAll(
+    '.actions button, #groups label, #assets-toggle, #alarms-toggle')]
     .map((e) => ({ name: e.id || e.textContent, box: e.getBoundingClientRect() }))
     .filter(({ box }) => box.width > 0 && box.top < innerHeight / 2).map(({ name }) => name));
 
@@ -421,6 +422,36 @@ test('phones: the button of a list that a card or a trend covers shows the list 
             }
     }
 }));
+
+// The alarm strip stays at the top of a phone's screen, where no sheet and no hand covers it. What users press often is in the lower half:
+// Google Maps places its bar and its sheets there, too.
+test('phones: one thumb opens and closes the alarm list, and reaches the controls that users press often', options, () => onScreen(PHONE,
+    async (page) => {
+        const alarms = () => page.evaluate(() => globalThis.plantcast.session.model.alarms.counts().active);
+        for (const [width, height] of PHONES) {
+            const upright = height > width, name = `${width}x${height}`;
+            await resize(page, { width, height });
+            const often = ['#alarms-toggle', '#home', '#more-toggle',
+                ...upright ? ['#assets-toggle', '#groups', '#views-toggle', '#time-toggle'] : []];
+            await becomes(() => page.evaluate((all) => all.filter((selector) => {
+                const { left, right, top, bottom } = document.querySelector(selector).getBoundingClientRect();
+                const isIn = left >= 0 && right <= innerWidth && bottom <= innerHeight && (top + bottom) / 2 > innerHeight / 2;
+                return !isIn || !document.elementFromPoint((left + right) / 2, (top + bottom) / 2)?.closest(selector);
+            }), often), [], name);
+            const tools = await boxOf(page, '.actions');
+            assert.ok(upright || tools.x + tools.width >= width - 1, `${name}: the column of tools is where the right thumb is`);
+            await becomes(async () => page.locator('#alarms-toggle').getAttribute('data-count'), String(await alarms() || ''), name, 20);
+            await page.locator('#alarms-toggle').tap();
+            await visible(page, '#alarms');
+            assert.equal(await page.locator('#alarms-toggle').getAttribute('aria-expanded'), 'true');
+            await shoot(page, `phone-thumb-${name}`);
+            await page.locator('#alarms-toggle').tap();
+            await hidden(page, '#alarms');
+            assert.equal(await page.evaluate(() => document.activeElement.id), 'alarms-toggle');
+        }
+        await resize(page, { width: 1280, height: 800 });
+        await page.locator('#alarms-toggle').waitFor({ state: 'detached' });
+    }));
 
 test('phones: sheets, time bar and trends leave room for the picture; the sheet\'s grip has two heights',
     options, () => onScreen(PHONE, async (page) => {

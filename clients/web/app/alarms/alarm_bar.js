@@ -70,7 +70,8 @@ export class AlarmBar {
         if (!this.alarms?.known)
             return;
         const counts = this.alarms.counts(), { active, waiting, of, gone } = counts;
-        byId('alarm-strip').dataset.kind = active === 0 ? (waiting > 0 ? 'gone' : 'none') : waiting > 0 ? 'waiting' : 'some';
+        const kind = active === 0 ? (waiting > 0 ? 'gone' : 'none') : waiting > 0 ? 'waiting' : 'some';
+        Object.assign(byId('alarm-strip').dataset, { kind, active });
         const badges = (list, hollow) =>
             list.flatMap((count, i) => (count > 0 ? [badge(i + 1, hollow), make('b', {}, `×\u2009${count}`)] : []));
         byId('alarm-counts').replaceChildren(...badges(of, false), ...badges(gone, true));

@@ -85,10 +85,11 @@ export class AlarmList {
         byId('alarm-strip').setAttribute('aria-expanded', open);
         this.readJournal();
         this.show();
-        if (open)
+        if (open) {
+            this.opener = document.activeElement.closest('[aria-controls="alarms"]');
             byId('alarms-close').focus();
-        else
-            byId('alarm-strip').focus();
+        } else
+            (this.opener?.isConnected ? this.opener : byId('alarm-strip')).focus();
     }
 
     // Closes the equipment list while the alarm list is open, to leave room for the picture, and reopens it afterwards.
