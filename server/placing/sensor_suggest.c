@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Suggests positions for new sensors. Candidate positions are sorted by an upper bound of their gain. The bound uses
+/* Suggests positions for new sensors. The surface is represented by points: the vertices, and points inside large faces (triangles
+   of the finest level of detail). Candidate positions are sorted by an upper bound of their gain. The bound uses
    straight-line distances, which are never longer than geodesic ones. So only the candidates with the highest bounds need
    geodesic distances. */
 #include "placing/sensor_suggest.h"
@@ -11,8 +12,8 @@
 #include "base/mem.h"
 #include "field/kernels.h"
 #include "field/layout.h"
+#include "placing/face_piece.h"
 #include "placing/mover.h"
-#include "placing/sensor_coverage.h"
 #include "plant/influence.h"
 #include "plant/models/transform.h"
 
@@ -24,19 +25,27 @@
    (sensor_suggest.h) */
 #define MIN_GAIN 1e-6
 
+/* longest side of a piece of a face that one point represents, as a part of the distance within which a sensor detects a hot spot
+   as strong as the group's full value range. The sides are longer if an asset would need more than MAX_POINTS points. */
+#define PIECE_PART 0.2
+enum { MAX_POINTS = 100000 };
+
 struct suggest_asset { /* an asset on which sensors may be suggested */
     int asset;
-    size_t count;
-    const float (*at_m)[3];
+    struct field_layout *layout; /* sensors of the group */
+    struct layout_points inside; /* points inside faces */
+    /* number of points that represent the surface: the asset's vertices, then the points inside faces */
+    size_t count, vertex_count;
+    float (*at_m)[3];
     double *area_m2, whole_m2;
-    float *near_m;            /* by vertex: distance in metres to the nearest sensor, including suggested ones */
+    float *near_m;            /* by point: distance in metres to the nearest sensor, including suggested ones */
     struct relocation *mover; /* computes geodesic distances on the asset; NULL: not needed yet */
 };
 
 struct candidate {
     size_t part;
-    uint32_t vertex;
-    /* upper bound of the gain of a sensor at this vertex: reduction of the measure of how hard hot spots are to detect
+    size_t point;
+    /* upper bound of the gain of a sensor at this point: reduction of the measure of how hard hot spots are to detect
        (sensor_suggest.h) times the area in square metres */
     double bound;
 };
@@ -68,6 +77,107 @@ static void measure(const struct suggesting *suggesting, double *mean, double *s
     }
 }
 
+/* --- points that represent the surface --------------------------------------------------------------------------------------- */
+
+struct face_split { /* division of large faces into pieces */
+    struct suggest_asset *part;
+    double longest_m; /* longest side of a piece */
+    size_t count;     /* number of pieces of large faces so far */
+    bool store;       /* store the middle of each piece as a point; false: count only */
+};
+
+/* Halves the piece until no side is longer than split->longest_m. Counts or stores the resulting pieces. */
+static void split_piece(struct face_split *split, const uint32_t face[3], const struct face_piece *piece, const double at_m[3][3],
+                        double area_m2)
+{
+    double sides_m[3];
+    for (int k = 0; k < 3; k++)
+        sides_m[k] = vec_distance(at_m[k], at_m[(k + 1) % 3]);
+    int side = sides_m[0] >= max_of(sides_m[1], sides_m[2]) ? 0 : sides_m[1] >= sides_m[2] ? 1 : 2, next = (side + 1) % 3;
+    if (sides_m[side] > split->longest_m && split->count <= MAX_POINTS) {
+        struct face_piece halves[2];
+        double half_m[3][3];
+        face_piece_halve(piece, side, halves);
+        for (int h = 0; h < 2; h++) {
+            memcpy(half_m, at_m, sizeof(half_m));
+            vec_mix(at_m[side], at_m[next], 0.5, half_m[h == 0 ? next : side]);
+            split_piece(split, face, &halves[h], half_m, area_m2 / 2);
+        }
+        return;
+    }
+    if (split->store) {
+        const struct suggest_asset *part = split->part;
+        float middle[3];
+        face_piece_middle(piece, middle);
+        layout_set_point(&part->layout->file->view, &part->inside, split->count, face, middle);
+        memcpy(part->at_m[part->vertex_count + split->count], part->inside.positions_m[split->count], sizeof(*part->at_m));
+        part->area_m2[part->vertex_count + split->count] = area_m2;
+    }
+    split->count++;
+}
+
+/* Counts the points inside faces or, if split->store is true, stores them and the area that each point represents. The corners of
+   a face that is not divided represent a third of its area each. */
+static void split_faces(struct face_split *split)
+{
+    const struct asset_view *view = &split->part->layout->file->view;
+    size_t count;
+    const uint32_t(*faces)[3] = face_list(view, &count);
+    split->count = 0;
+    for (size_t i = 0; i < count && split->count <= MAX_POINTS; i++) {
+        double at_m[3][3], area_m2 = face_area(view, faces[i]), longest_m = 0;
+        for (int k = 0; k < 3; k++)
+            for (int c = 0; c < 3; c++)
+                at_m[k][c] = (double)view->positions_m[faces[i][k]][c];
+        for (int k = 0; k < 3; k++)
+            longest_m = max_of(longest_m, vec_distance(at_m[k], at_m[(k + 1) % 3]));
+        if (longest_m > split->longest_m && area_m2 > 0)
+            split_piece(split, faces[i], &face_whole, at_m, area_m2);
+        else
+            for (int k = 0; split->store && k < 3; k++)
+                split->part->area_m2[faces[i][k]] += area_m2 / 3;
+    }
+}
+
+/* Stores the points that represent the asset's surface. Returns false if memory ran out. */
+static bool make_points(const struct suggesting *suggesting, struct suggest_asset *part)
+{
+    const struct asset_view *view = &part->layout->file->view;
+    struct face_split split = { .part = part, .longest_m = PIECE_PART * suggesting->seen_m };
+    for (split_faces(&split); split.count > MAX_POINTS; split_faces(&split))
+        split.longest_m *= 1.25;
+    size_t inside = split.count;
+    part->vertex_count = part->layout->vertex_count;
+    part->count = part->vertex_count + inside;
+    part->at_m = mem_try_array(part->count, sizeof(*part->at_m));
+    part->area_m2 = mem_try_array(part->count, sizeof(*part->area_m2));
+    part->near_m = mem_try_array(part->count, sizeof(*part->near_m));
+    part->inside =
+        (struct layout_points){ mem_array(inside, sizeof(*part->inside.positions_m)), mem_array(inside, sizeof(*part->inside.corners)),
+                                mem_array(inside, sizeof(*part->inside.parts)), mem_array(inside, sizeof(*part->inside.away_m)) };
+    if (!part->at_m || !part->area_m2 || !part->near_m)
+        return false;
+    memcpy(part->at_m, view->positions_m, part->vertex_count * sizeof(*part->at_m));
+    split.store = true;
+    split_faces(&split);
+    return true;
+}
+
+/* Lowers near_m, an array by point, to the distances from one sensor of the layout, where these are smaller. */
+static void take_nearest(const struct suggest_asset *part, const struct field_layout *layout, size_t sensor, float *near_m)
+{
+    struct field_layout inside = *layout;
+    float room[KERNEL_BLOCK];
+    inside.points = &part->inside;
+    for (size_t at = 0, count, end; at < part->count; at += count) {
+        bool is_vertex = at < part->vertex_count;
+        size_t begin = is_vertex ? at : at - part->vertex_count;
+        end = is_vertex ? part->vertex_count : part->count;
+        count = end - at < KERNEL_BLOCK ? end - at : KERNEL_BLOCK;
+        kernel_nearest(layout_distances(is_vertex ? layout : &inside, DISTANCE_GEODESIC, sensor, begin, count, room), count, near_m + at);
+    }
+}
+
 static bool add_part(struct suggesting *suggesting, int asset)
 {
     const struct suggest_query *query = suggesting->query;
@@ -76,26 +186,31 @@ static bool add_part(struct suggesting *suggesting, int asset)
         layout_destroy(&layout);
         return true;
     }
-    const struct asset_view *view = &layout->file->view;
     struct suggest_asset *part = &suggesting->parts[suggesting->part_count++];
-    *part = (struct suggest_asset){ .asset = asset, .count = layout->vertex_count, .at_m = view->positions_m };
-    part->area_m2 = sensor_coverage_areas(view);
-    part->near_m = mem_try_array(part->count, sizeof(*part->near_m));
-    if (part->near_m) {
-        for (size_t v = 0; v < part->count; v++) {
-            part->near_m[v] = INFINITY;
-            part->whole_m2 += part->area_m2[v];
-        }
-        for (size_t i = 0; i < layout->sensor_count; i++)
-            for (size_t at = 0; at < part->count; at += KERNEL_BLOCK) {
-                size_t count = part->count - at < KERNEL_BLOCK ? part->count - at : KERNEL_BLOCK;
-                float room[KERNEL_BLOCK];
-                kernel_nearest(layout_distances(layout, DISTANCE_GEODESIC, i, at, count, room), count, part->near_m + at);
-            }
+    *part = (struct suggest_asset){ .asset = asset, .layout = layout };
+    if (!make_points(suggesting, part))
+        return false;
+    for (size_t p = 0; p < part->count; p++) {
+        part->near_m[p] = INFINITY;
+        part->whole_m2 += part->area_m2[p];
     }
+    for (size_t i = 0; i < layout->sensor_count; i++)
+        take_nearest(part, layout, i, part->near_m);
     suggesting->whole_m2 += part->whole_m2;
-    layout_destroy(&layout);
-    return part->near_m;
+    return true;
+}
+
+static void remove_part(struct suggest_asset *part)
+{
+    relocation_destroy(&part->mover);
+    layout_destroy(&part->layout);
+    mem_free(part->inside.positions_m);
+    mem_free(part->inside.corners);
+    mem_free(part->inside.parts);
+    mem_free(part->inside.away_m);
+    mem_free(part->at_m);
+    mem_free(part->area_m2);
+    mem_free(part->near_m);
 }
 
 /* --- candidates -------------------------------------------------------------------------------------------------------------- */
@@ -120,7 +235,7 @@ static void bound_some(void *arg, size_t begin, size_t end)
     for (size_t i = begin; i < end; i++) {
         struct candidate *candidate = &bounding->candidates[i];
         const struct suggest_asset *part = &bounding->suggesting->parts[candidate->part];
-        const float *from = part->at_m[candidate->vertex];
+        const float *from = part->at_m[candidate->point];
         const double most = bounding->suggesting->seen_m * bounding->suggesting->seen_m;
         for (size_t v = 0; v < part->count; v++) {
             const float *to = part->at_m[v];
@@ -149,11 +264,11 @@ static struct candidate *find_candidates(const struct suggesting *suggesting, si
         double whole = 0, passed = 0, next = 0;
         for (size_t v = 0; v < part->count; v++)
             whole += part->area_m2[v] * unseen(suggesting, (double)part->near_m[v]);
-        for (uint32_t v = 0; v < part->count && whole > 0; v++) {
+        for (size_t v = 0; v < part->count && whole > 0; v++) {
             passed += part->area_m2[v] * unseen(suggesting, (double)part->near_m[v]);
             if (passed <= next)
                 continue;
-            list[(*count)++] = (struct candidate){ .part = p, .vertex = v };
+            list[(*count)++] = (struct candidate){ .part = p, .point = v };
             while (next < passed)
                 next += whole / MAX_CANDIDATES;
         }
@@ -184,13 +299,13 @@ static void on_distances(void *arg, struct relocation_result *result)
     pthread_mutex_unlock(&waiting->lock);
 }
 
-/* Computes the geodesic distances from one vertex of an asset to all others. Returns an array by vertex, which the caller frees
-   (mem_free); NULL on failure. */
-static float *distances_from(const struct suggesting *suggesting, struct suggest_asset *part, uint32_t vertex)
+/* Computes the distances along the surface from one point of an asset to all points that represent its surface. Returns an array
+   by point, which the caller frees (mem_free); NULL on failure. */
+static float *distances_from(const struct suggesting *suggesting, struct suggest_asset *part, size_t point)
 {
     const struct suggest_query *query = suggesting->query;
     struct suggest_wait waiting = { .is_done = false };
-    const double point_m[3] = { (double)part->at_m[vertex][0], (double)part->at_m[vertex][1], (double)part->at_m[vertex][2] };
+    const double point_m[3] = { (double)part->at_m[point][0], (double)part->at_m[point][1], (double)part->at_m[point][2] };
     if (!part->mover)
         part->mover = mover_create(query->log, query->workers, query->scene, query->folder, part->asset);
     pthread_mutex_init(&waiting.lock, NULL);
@@ -203,7 +318,18 @@ static float *distances_from(const struct suggesting *suggesting, struct suggest
     }
     pthread_mutex_destroy(&waiting.lock);
     pthread_cond_destroy(&waiting.done);
-    return waiting.result.status == RELOCATION_DONE ? waiting.result.geodesic_m : NULL;
+    float *away_m = waiting.result.status == RELOCATION_DONE ? mem_try_array(part->count, sizeof(*away_m)) : NULL;
+    if (away_m) {
+        struct layout_sensor sensor = { .tried = true, .tried_m = waiting.result.geodesic_m };
+        struct field_layout layout = *part->layout;
+        layout.sensors = &sensor;
+        layout.sensor_count = 1;
+        for (size_t p = 0; p < part->count; p++)
+            away_m[p] = INFINITY;
+        take_nearest(part, &layout, 0, away_m);
+    }
+    mem_free(waiting.result.geodesic_m);
+    return away_m;
 }
 
 /* Finds the candidate position with the largest gain, and counts it as a sensor from now on. Returns false if no candidate
@@ -216,7 +342,7 @@ static bool take_best(struct suggesting *suggesting, struct suggestion *out)
     double most = MIN_GAIN * suggesting->whole_m2;
     for (size_t i = 0; i < count && i < MAX_MEASURED && list[i].bound > most; i++) {
         struct suggest_asset *part = &suggesting->parts[list[i].part];
-        float *away_m = distances_from(suggesting, part, list[i].vertex);
+        float *away_m = distances_from(suggesting, part, list[i].point);
         double gain = away_m ? gain_of(suggesting, part, away_m) : 0;
         if (gain > most) {
             float *worse_m = best_m;
@@ -237,7 +363,7 @@ static bool take_best(struct suggesting *suggesting, struct suggestion *out)
         part->near_m[v] = fminf(part->near_m[v], best_m[v]);
     measure(suggesting, &out->after, &out->unseen_after);
     for (int c = 0; c < 3; c++)
-        out->at_m[c] = (double)part->at_m[best.vertex][c];
+        out->at_m[c] = (double)part->at_m[best.point][c];
     transform_point(suggesting->query->scene->assets[part->asset].placement, out->at_m, out->at_m);
     mem_free(best_m);
     return true;
@@ -256,11 +382,8 @@ size_t sensor_suggest(const struct suggest_query *query, struct suggestion *out)
         log_err(query->log, "cannot suggest positions for sensors: out of memory");
     while (good && suggesting.part_count > 0 && made < query->count && take_best(&suggesting, &out[made]))
         made++;
-    for (size_t p = 0; p < suggesting.part_count; p++) {
-        relocation_destroy(&suggesting.parts[p].mover);
-        mem_free(suggesting.parts[p].area_m2);
-        mem_free(suggesting.parts[p].near_m);
-    }
+    for (size_t p = 0; p < suggesting.part_count; p++)
+        remove_part(&suggesting.parts[p]);
     mem_free(suggesting.parts);
     return made;
 }
