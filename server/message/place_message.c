@@ -175,8 +175,9 @@ char *coverage_text(const struct scene *scene, const struct place_set *set, cons
         json_t *said =
             json_pack("{s:s,s:i,s:f,s:f,s:o}", "asset", plant->assets[answer->assets[i].asset].id, "sensors", (int)coverage->sensors,
                       "far_m", coverage->far_m, "farthest_m", coverage->farthest_m, "farthest_at", vector(coverage->farthest_at_m));
-        json_object_update_new(said, json_pack("{s:f,s:f,s:f,s:o}", "far_share", coverage->far_share, "lost_share", coverage->lost_share,
-                                               "next_m", coverage->next_m, "next", next));
+        json_object_update_new(said, json_pack("{s:f,s:f,s:f,s:f,s:f,s:o}", "farthest_error_m", coverage->farthest_error_m, "far_share",
+                                               coverage->far_share, "lost_share", coverage->lost_share, "unsure_share",
+                                               coverage->unsure_share, "next_m", coverage->next_m, "next", next));
         json_array_append_new(assets, said);
     }
     return json_text(json_pack("{s:s,s:I,s:s,s:o,s:o}", "type", "gaps", "seq", (json_int_t)answer->seq, "group",

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Sensor coverage: how far the points of an asset's surface are from its sensors, and how much of the area no usable sensor
-   covers. No input or output. Call from any thread. */
+   covers. Considers all points of the surface, also those inside large triangles: distances there follow from those of the
+   vertices by the field's definition (layout_distances() in field/layout.h). No input or output. Call from any thread. */
 #ifndef PLACING_SENSOR_COVERAGE_H
 #define PLACING_SENSOR_COVERAGE_H
 #include "field/layout.h"
@@ -16,6 +17,7 @@ struct sensor_coverage_query {
     /* metres; a point at least this far from all sensors counts as far. 0: half of reach_m or, without a limit, a fifth of the asset's
        size */
     double far_m;
+    long work;           /* maximum number of evaluations of a sensor's distances inside faces; 0: 4 million, about half a second */
     const uint8_t *good; /* [tag]: 1: the tag's reading is usable now; 0: it is not */
 };
 
@@ -26,17 +28,19 @@ struct sensor_coverage {
        that no path along the surface connects with a sensor */
     double farthest_m;
     double farthest_at_m[3]; /* position of the farthest surface point, in plant coordinates */
-    double far_share;        /* fraction of the surface's area that counts as far (far_m), 0..1 */
+    /* no point is farther than farthest_m + farthest_error_m, in metres: 0.01 % of farthest_m, more if the work limit was reached */
+    double farthest_error_m;
+    /* fraction of the surface's area that counts as far (far_m), 0..1. Its border consists of straight lines of at most far_m / 8
+       around a sensor, and of a thousandth of the asset's size where sensors meet */
+    double far_share;
     double lost_share;       /* fraction of the area that no sensor reaches, or whose nearest sensor has no usable reading */
+    double unsure_share;     /* fraction of the area that was not examined as finely, because the work limit was reached; usually 0 */
     double next_m;           /* largest distance in metres between a sensor and its nearest other sensor; 0: there is only one sensor */
     int next_tags[2];        /* indices of the tags of the two sensors that are next_m apart; -1: none */
 };
 
-/* Computes the coverage of the asset by the group's sensors into *out. Returns false if the asset has no sensor of the group. */
+/* Computes the coverage of the asset by the group's sensors into *out. Returns false if the asset has no sensor of the group, or
+   memory ran out. */
 bool sensor_coverage_find(const struct sensor_coverage_query *order, struct sensor_coverage *out);
-
-/* Returns an array by vertex: the area in square metres that the vertex represents, a third of each adjacent triangle at the
-   finest level of detail. The caller frees it (mem_free). */
-double *sensor_coverage_areas(const struct asset_view *view);
 
 #endif
