@@ -11,7 +11,7 @@ import { PlainClient } from './support/plain_client.mjs';
 import { freePort } from './support/ports.mjs';
 import { promise } from './support/promise.mjs';
 import { HookServer, MailServer } from './support/receivers.mjs';
-import { notBuilt, Program, runProgram, sleep, TinyPlant } from './support/tiny_plant.mjs';
+import { notBuilt, Program, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 import { until } from './support/until.mjs';
 
 const options = { skip: notBuilt(), timeout: 240000 };
@@ -171,7 +171,8 @@ notify:
         const [{ subject, body }] = await until('after the outage', () => mail.mails.length > 0 && mail.mails);
         assert.equal(subject, `[Two boxes] ${EXTRA} alarms, ${EXTRA} of priority 3`);
         assert.match(body, /\.\.\. and 450 more/);
-        await sleep(3000);
+        await until('nothing more to send', async () => await plant.metric('plantcast_notify_waiting{recipient="ops"}') === 0 &&
+            await plant.metric('plantcast_notify_waiting{recipient="hook"}') === 0);
         assert.equal(mail.mails.length, 1);
         assert.equal(hook.posts.length, 1);
     } finally {
@@ -205,8 +206,9 @@ notify:
     }
 });
 
-test('an alarm is sent to one recipient after another until somebody acknowledges it', options, async () => {
-    const hooks = [new HookServer(), new HookServer(), new HookServer()];
+// outbox_test checks with a simulated clock that an acknowledged alarm is not escalated
+test('an alarm that nobody acknowledges is sent to the next recipient; a failed message is repeated with its id', options, async () => {
+    const hooks = [new HookServer(), new HookServer()];
     for (const hook of hooks)
         await hook.listen();
     const plant = await createPlant(`alarms: local
@@ -215,7 +217,7 @@ notify:
   pause_s: 0
   recipients:
 ${hooks.map(({ port }, i) => `    - { id: h${i}, webhook: "http://127.0.0.1:${port}/" }`).join('\n')}
-  rules: [{ id: all, to: h0, escalate: [{ after_min: 0.05, to: h1 }, { after_min: 0.2, to: h2 }] }]
+  rules: [{ id: all, to: h0, escalate: [{ after_min: 0.02, to: h1 }] }]
 `);
     try {
         await calm(plant);
@@ -228,12 +230,6 @@ ${hooks.map(({ port }, i) => `    - { id: h${i}, webhook: "http://127.0.0.1:${po
         assert.equal(hooks[0].posts[0].body.id, hooks[0].taken[0].id, 'the retry has the same message id');
         const [next] = await until('the next one is told', () => hooks[1].taken.length > 0 && hooks[1].taken);
         assert.deepEqual(next.alarms.map(({ tag, escalation }) => [tag, escalation]), [['TI-1', 1]]);
-        await acknowledge(plant, 'TI-1', ['H']);
-        // TI-1's alarm, now acknowledged, must not escalate further. An alarm of TI-2 does escalate to the last recipient; if
-        // TI-1's escalated too, it would have arrived there by then.
-        await set(plant, 'TI-2', limits.high);
-        const [last] = await until('the last one is told', () => hooks[2].taken.length > 0 && hooks[2].taken);
-        assert.deepEqual(last.alarms.map(({ tag }) => tag), ['TI-2']);
     } finally {
         for (const hook of hooks)
             await hook.close();
