@@ -101,8 +101,7 @@ test('another Plantcast shows the published values with the same qualities and t
     const url = `http://127.0.0.1:${plant.port}/api/v1/tags?count=9`;
     const here = async () => (await (await fetch(url)).json()).tags.find(({ name }) => name === 'TI-1');
     await until('Bad', async () => !(await here()).quality_name.startsWith('Good'));
-    await sleep(2000);
-    await other.until('TI-1', { quality_name: (await here()).quality_name });
+    await until('the same quality', async () => (await other.tags())['TI-1'].quality_name === (await here()).quality_name);
     await plant.tell('release TI-1');
     await other.until('TI-1', { quality_name: 'Good' });
 });
