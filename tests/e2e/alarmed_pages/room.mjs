@@ -237,6 +237,30 @@ test('after a resize, the old picture stays undistorted and its marks stay in pl
     });
 });
 
+test('in the low picture above a trend and the time bar, legend and banner are complete, and do not overlap', options, async () => {
+    for (const [width, height] of sweep([[1024, 768], [1280, 800], [1280, 640]], [[1024, 768]]))
+        await withPage(`${url}?lang=en`, { viewport: { width, height }, hasTouch: true }, async (page) => {
+            await waitForPicture(page);
+            await page.waitForFunction(() => globalThis.plantcast.session.recorded);
+            await page.evaluate(() => {
+                const { session, showTrend } = globalThis.plantcast;
+                showTrend(session.model.tag('TI-1'));
+            });
+            await page.locator('#trend-chart canvas').waitFor();
+            await page.locator('#time-toggle').click();
+            await page.locator('#time-slider').waitFor();
+            await page.locator('#hold').click();
+            await page.locator('#banner[data-kind="past"]').waitFor();
+            await becomes(() => page.evaluate(() => {
+                const [picture, legend, banner, end] = ['#viewport', '#legend', '#banner', '#legend .end.below']
+                    .map((part) => document.querySelector(part).getBoundingClientRect());
+                return { below: legend.bottom <= picture.bottom && end.height > 0 && end.bottom <= legend.bottom,
+                    apart: banner.right <= legend.left || banner.bottom <= legend.top, inside: banner.left >= picture.left };
+            }), { below: true, apart: true, inside: true }, `${width}x${height}`, 20);
+            await shoot(page, `low-past-${width}`);
+        });
+});
+
 // Windows with little room next to a panel, and tablets.
 const LITTLE = sweep([[1024, 600], [1024, 768], [1100, 700], [1199, 640], [1280, 640], [768, 1024], [820, 1180], [740, 560]],
     [[1024, 600], [768, 1024], [1280, 640]]);

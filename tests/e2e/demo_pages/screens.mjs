@@ -497,6 +497,11 @@ test('phones: sheets, time bar and trends leave room for the picture; the sheet\
         await ask(page, 'selectTag');
         await visible(page, '#card');
         await leaves('trend-card', 0.2);
+        await becomes(() => page.evaluate(() => {
+            const [value, button] = ['.value', '.trends-of'].map((part) => document.querySelector(`#card ${part}`).getBoundingClientRect());
+            const card = document.getElementById('card').getBoundingClientRect();
+            return [value.top >= card.top && value.bottom <= card.bottom, button.left >= value.left + 90 || button.top >= value.bottom];
+        }), [true, true], `${name}: the card's value is complete, and no button covers it`, 20);
         await page.locator('#trend-close').tap();
         await page.evaluate(() => globalThis.plantcast.selectTag(null));
         await page.locator('#alarm-strip').tap();
@@ -650,9 +655,11 @@ test('phones: names and states are readable and complete, and controls are finge
         const isOver = await page.evaluate(() => {
             const state = document.querySelector('#health .words'), { textContent } = state;
             state.textContent = 'Keine Verbindung zum Server';
-            const strip = document.getElementById('alarm-strip'), [a, b] = [strip, document.querySelector('.identity')]
-                .map((e) => e.getBoundingClientRect());
+            const strip = document.getElementById('alarm-strip'), [a, b, title] = [strip, document.querySelector('.identity'),
+                document.getElementById('plant-name')].map((e) => e.getBoundingClientRect());
             state.textContent = textContent;
+            if (title.top < 0 || title.bottom > b.bottom + 1)
+                return `the name is cut: from ${title.top} to ${title.bottom}`;
             return b.top < a.bottom && a.top < b.bottom && b.left < a.right - parseFloat(getComputedStyle(strip).paddingRight);
         });
         assert.equal(isOver, false, name);
