@@ -8,7 +8,9 @@
 
 #include "base/math/vec.h"
 #include "base/mem.h"
+#include "field/update.h"
 #include "plant/exact.h"
+#include "plant/influence.h"
 #include "plant/singles.h"
 
 /* GROUP: number of triangles evaluated together. GRAIN: number of triangles per job of a worker thread. MAX_PIECES: maximum
@@ -29,6 +31,9 @@ enum { GROUP = 64, GRAIN = 1024, MAX_PIECES = 96 };
    wrong distances is measured: with smaller powers, it changed no value by a colour step */
 #define AMPLIFYING_POWER 8
 #define STEP_OF_COLOR (1 / 255.0f)
+/* largest accepted error of SHOW_BLIND, as a fraction of the colour scale. It grows so fast with distance that linear
+   interpolation is a colour step off on most triangles. */
+#define BLIND_ACCEPTED 0.1f
 /* A drawn frame may show data where the field has none, up to this far beyond the border of the data; a larger overlap counts
    as an error. Unit: steps of the byte scalar.lacking (encoded distance from that border) */
 #define BORDER_SLACK 4
@@ -44,6 +49,7 @@ struct triangle_piece {  /* part of a triangle; the error is sampled at the midp
 
 struct sampler { /* working memory of one thread that samples triangles */
     const struct weights *of;
+    const struct drawn_near *near; /* see struct drawn_error_job */
     const struct asset_view *file;
     struct field_layout layout;
     struct layout_points points;
@@ -70,6 +76,9 @@ struct drawn_error_job {
     uint32_t first;       /* index of the first triangle whose interpolation error to measure */
     float *errors;        /* error of each triangle */
     float *vertex_errors; /* error of each vertex's value due to errors of geodesic distances; NULL: not measured */
+    /* a value that depends on the distance to the nearest sensor alone, which is measured instead of the weights; NULL: the weights
+       are measured */
+    const struct drawn_near *near;
 };
 
 /* --- weights at points ------------------------------------------------------------------------------------------------------ */
@@ -77,7 +86,9 @@ struct drawn_error_job {
 static bool sampler_init(struct sampler *sampler, const struct drawn_error_job *job)
 {
     size_t members = job->weights->member_count;
-    *sampler = (struct sampler){ .of = job->weights, .file = &job->weights->layout->file->view, .layout = *job->weights->layout };
+    *sampler = (struct sampler){
+        .of = job->weights, .near = job->near, .file = &job->weights->layout->file->view, .layout = *job->weights->layout
+    };
     sampler->layout.points = &sampler->points;
     sampler->layout.vertex_count = KERNEL_BLOCK;
     sampler->points.positions_m = mem_array(KERNEL_BLOCK, sizeof(*sampler->points.positions_m));
@@ -111,6 +122,8 @@ static void evaluate(struct sampler *sampler, size_t count)
     memset(sampler->values, 0, count * sizeof(*sampler->values));
     memset(sampler->total, 0, count * sizeof(*sampler->total));
     weights_prepare(weights, 0, count);
+    if (sampler->near)
+        return;
     weights_add(weights, 0, count, &sampler->terms, &(struct weights_sums){ sampler->values, sampler->total, NULL });
     for (size_t j = 0; j < count; j++)
         sampler->total[j] = sampler->total[j] > 0 ? 1 / sampler->total[j] : 0;
@@ -122,6 +135,8 @@ static void evaluate_corners(struct sampler *sampler)
 {
     static const float at_corner[3][3] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } };
     size_t count = 3 * sampler->tri_count;
+    if (sampler->near)
+        return;
     for (size_t j = 0; j < count; j++)
         layout_set_point(sampler->file, &sampler->points, j, sampler->tris[j / 3], at_corner[j % 3]);
     evaluate(sampler, count);
@@ -204,6 +219,56 @@ static void add_errors(struct sampler *sampler, const struct triangle_piece *pie
     }
 }
 
+/* --- values that depend on the distance to the nearest sensor alone ------------------------------------------------------- */
+
+static float shown_at(const struct drawn_near *near, float near_m)
+{
+    return near->group ? update_blind(near->group, near_m) : near_m;
+}
+
+/* Returns the place of a value on the colour scale, 0 to 1. The scale of SHOW_BLIND is logarithmic and ends at the group's range. */
+static float scale_of(const struct drawn_near *near, float shown)
+{
+    if (!near->group)
+        return shown / near->largest_m;
+    const float most = (float)(near->group->max - near->group->min), least = (float)PLANT_SEEN_PART * most;
+    return logf(fminf(fmaxf(shown, least), most) / least) / logf(most / least);
+}
+
+/* Returns the largest accepted error, as a fraction of the colour scale. */
+static float accepted_near(const struct drawn_near *near)
+{
+    return near->group ? BLIND_ACCEPTED : STEP_OF_COLOR;
+}
+
+static void add_near_errors(struct sampler *sampler, const struct triangle_piece *pieces, size_t count)
+{
+    for (size_t j = 0; j < count; j++) {
+        const uint32_t *corners = sampler->tris[pieces[j].tri];
+        float drawn = 0, *error = sampler->errors[pieces[j].tri];
+        for (int k = 0; k < 3; k++)
+            drawn += sampler->points.parts[j][k] * shown_at(sampler->near, sampler->of->near_m[corners[k]]);
+        float here = scale_of(sampler->near, shown_at(sampler->near, sampler->weights->near_m[j]));
+        *error = fmaxf(*error, fabsf(scale_of(sampler->near, drawn) - here));
+    }
+}
+
+/* Returns true if a triangle needs no samples: its longest side is so short that interpolation is off by at most the accepted
+   error, or a corner has no distance. Because a distance changes by at most the length of the way, a distance interpolated within
+   the triangle is off by at most the mean of the lengths to the corners, weighted by the barycentric coordinates. This is at
+   most 1 / sqrt(3) of the longest side. */
+static bool is_even(const struct drawn_near *near, float longest_m, float nearest_m, float farthest_m)
+{
+    float off_m = 0.58f * longest_m, low = scale_of(near, shown_at(near, fmaxf(nearest_m - off_m, 0)));
+    return !isfinite(farthest_m) || scale_of(near, shown_at(near, farthest_m + off_m)) - low <= 2 * accepted_near(near);
+}
+
+/* Returns the length in metres above which a piece whose middle has this distance from the nearest sensor is halved. */
+static float longest_piece(const struct sampler *sampler, float step, float near_m)
+{
+    return sampler->near && sampler->near->group ? STEP * (float)sampler->near->group->hot_spot_m : step * near_m;
+}
+
 static void sample_group(struct sampler *sampler, float step)
 {
     struct triangle_piece taken[KERNEL_BLOCK];
@@ -226,9 +291,12 @@ static void sample_group(struct sampler *sampler, float step)
             layout_set_point(sampler->file, &sampler->points, j, sampler->tris[taken[j].tri], middle);
         }
         evaluate(sampler, count);
-        add_errors(sampler, taken, count);
+        if (sampler->near)
+            add_near_errors(sampler, taken, count);
+        else
+            add_errors(sampler, taken, count);
         for (size_t j = 0; j < count; j++)
-            if (lengths_m[j] > step * sampler->weights->near_m[j])
+            if (lengths_m[j] > longest_piece(sampler, step, sampler->weights->near_m[j]))
                 split(sampler, &taken[j], begins[j], sampler->points.parts[j]);
     }
     sampler->queued = sampler->tri_count = 0;
@@ -285,15 +353,18 @@ static bool is_straight(const struct drawn_error_job *job, const uint32_t corner
 {
     const struct weights *weights = job->weights;
     const float(*at)[3] = weights->layout->file->view.positions_m;
-    float longest_m = 0, near_m = INFINITY;
+    float longest_m = 0, near_m = INFINITY, far_m = 0;
     bool data = false;
     for (int k = 0; k < 3; k++) {
         longest_m = fmaxf(longest_m, vecf_distance(at[corners[k]], at[corners[(k + 1) % 3]]));
         near_m = fminf(near_m, weights->near_m[corners[k]]);
+        far_m = fmaxf(far_m, weights->near_m[corners[k]]);
         data |= weights->place[corners[k]] != PLACE_NOBODY;
-        if (weights->reach_m < INFINITY)
+        if (weights->reach_m < INFINITY && !job->near)
             near_m = fminf(near_m, fabsf(weights->reach_m - weights->near_m[corners[k]]));
     }
+    if (job->near)
+        return longest_m < 2 * job->error_m || is_even(job->near, longest_m, near_m, far_m);
     return !data || longest_m < 2 * job->error_m || longest_m <= job->accepted * (near_m - longest_m);
 }
 
@@ -303,7 +374,7 @@ static void measure_some(void *arg, size_t begin, size_t end)
     struct sampler *sampler = mem_new(sizeof(*sampler));
     uint32_t *indices = (uint32_t *)job->weights->layout->file->view.indices;
     bool good = sampler_init(sampler, job);
-    float step = STEP * fminf(1, MAX_POWER / job->weights->power);
+    float step = job->near ? STEP : STEP * fminf(1, MAX_POWER / job->weights->power);
     /* out of memory: the errors stay unknown, so all are set to the maximum */
     for (size_t t = job->first + begin; t < job->first + end && !good; t++)
         job->errors[t] = 1;
@@ -514,5 +585,35 @@ void drawn_error_measure(struct weights *weights, const struct field_params *par
     weights->errors_version++;
     if (job.errors && weights->errors)
         measure_level(&job, &file->levels[number], resolved, workers);
+    mem_free(job.errors);
+}
+
+void drawn_error_mark(struct weights *weights, const struct field_params *params, const uint8_t *usable, const struct drawn_near *near,
+                      uint8_t *marks, struct workers *workers)
+{
+    const struct asset_view *file = &weights->layout->file->view;
+    const size_t blocks = (weights->layout->vertex_count + KERNEL_BLOCK - 1) / KERNEL_BLOCK;
+    struct drawn_error_job job = { .weights = weights,
+                                   .params = params,
+                                   .usable = usable,
+                                   .radius_m = weights->radius_m,
+                                   .near = near,
+                                   .errors = mem_try_array(file->header->index_count / 3, sizeof(float)) };
+    if (!job.errors) {
+        memset(marks, 1, weights->layout->vertex_count);
+        return;
+    }
+    workers_for(workers, blocks, 4, prepare_some, weights);
+    for (uint32_t l = 0; l < file->header->level_count; l++) {
+        const struct asset_level *level = &file->levels[l];
+        job.error_m = level->error_m;
+        for (uint32_t p = level->first_primitive; p < level->first_primitive + level->primitive_count; p++) {
+            job.first = file->primitives[p].first_index / 3;
+            workers_for(workers, file->primitives[p].index_count / 3, GRAIN, measure_some, &job);
+        }
+    }
+    for (uint32_t i = 0; i < file->header->index_count; i++)
+        if (job.errors[i / 3] > accepted_near(near))
+            marks[file->indices[i]] = 1;
     mem_free(job.errors);
 }

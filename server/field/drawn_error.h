@@ -16,6 +16,16 @@
    sensors are used, if the weights are prepared (then linear within triangles by definition), or when out of memory. */
 void drawn_error_measure(struct weights *weights, const struct field_params *params, const uint8_t *usable, size_t vertices, bool in_range,
                          struct workers *workers);
+/* A value that depends on the distance to the nearest used sensor alone: SHOW_BLIND and SHOW_DISTANCE. */
+struct drawn_near {
+    const struct plant_group *group; /* SHOW_BLIND: group of the sensors; NULL: SHOW_DISTANCE */
+    float largest_m;                 /* SHOW_DISTANCE: largest distance on the asset, in metres */
+};
+/* Sets marks[v] to 1 for the corners v of each triangle, on all levels of detail, within which such a value is drawn more than a
+   colour step off (SHOW_BLIND: a tenth of the colour scale) if it is interpolated between the corners. Other elements stay. params
+   and usable are those of weights_create(). Marks all vertices when out of memory. */
+void drawn_error_mark(struct weights *weights, const struct field_params *params, const uint8_t *usable, const struct drawn_near *near,
+                      uint8_t *marks, struct workers *workers);
 /* Returns the largest change of a value due to errors of distances along the surface, as a multiple of the weighted mean of
    |reading - value|. Returns 0 if these errors change no value noticeably, or if the distances are exact. */
 double drawn_error_of_distances(const struct weights *weights);

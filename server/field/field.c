@@ -4,6 +4,7 @@
 #include "field/field.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "base/mem.h"
 #include "field/drawn_error.h"
@@ -155,6 +156,42 @@ static int find_sensor(const struct field_layout *layout, int tag)
     return -1;
 }
 
+/* Marks the vertices of triangles on which distances along the surface from one sensor are not drawn to a colour step. */
+static void mark_distances(struct field *field, struct field_state *state, size_t sensor)
+{
+    struct field_params params = state->params;
+    struct drawn_near near = { .largest_m = 0 };
+    if (params.distance == DISTANCE_EUCLIDEAN)
+        return;
+    params.show = SHOW_VALUE;
+    params.interpolation = INTERPOLATION_SHEPARD;
+    params.reach_m = INFINITY;
+    memset(state->usable, SENSOR_ASIDE, state->layout->sensor_count);
+    state->usable[sensor] = SENSOR_USED;
+    uint8_t *marks = mem_try_array(state->scalars.count, 1);
+    struct weights *weights = weights_create(state->layout, &params, 1, state->usable, &(struct weights_key){ 0 });
+    for (size_t v = 0; v < state->scalars.count; v++)
+        near.largest_m = fmaxf(near.largest_m, state->at[v].value);
+    if (weights && marks && near.largest_m > 0)
+        drawn_error_mark(weights, &params, state->usable, &near, marks, field->workers);
+    for (size_t v = 0; v < state->scalars.count; v++)
+        state->at[v].uncertain = !weights || !marks || marks[v] ? 255 : 0;
+    weights_destroy(&weights);
+    mem_free(marks);
+}
+
+/* Finds the vertices of triangles on which SHOW_BLIND is not drawn to a colour step, unless they are known. */
+static void mark_blind(struct field *field, struct field_state *state)
+{
+    struct weights *weights = state->weights;
+    if (weights->blind_marks || weights->distance == DISTANCE_EUCLIDEAN || state->layout->assumed || weights->member_count == 0)
+        return;
+    weights->blind_marks = mem_try_array(state->layout->vertex_count, 1);
+    if (weights->blind_marks)
+        drawn_error_mark(weights, &state->params, state->usable, &(struct drawn_near){ .group = state->layout->group },
+                         weights->blind_marks, field->workers);
+}
+
 static const struct scalars *distance_scalars(struct field *field, int asset, const struct field_params *params,
                                               const struct snapshot *snapshot)
 {
@@ -167,8 +204,10 @@ static const struct scalars *distance_scalars(struct field *field, int asset, co
     state->scalars.oldest_age_ns = INT64_MAX;
     if (!grow_state(field, state, state->scalars.count))
         return NULL;
-    if (state->scalars.version == 0)
+    if (state->scalars.version == 0) {
         state_measure(state, (size_t)sensor, &field->versions);
+        mark_distances(field, state, (size_t)sensor);
+    }
     return &state->scalars;
 }
 
@@ -207,6 +246,8 @@ bool field_begin_update(struct field *field, struct field_state *state, const st
     }
     state_fill(state);
     struct weights *weights = state->weights;
+    if (state->params.show == SHOW_BLIND)
+        mark_blind(field, state);
     drawn_error_measure(weights, &state->params, state->usable, count, update_is_in_range(state), field->workers);
     uint64_t previous = weights->used;
     weights->used = field->tick;

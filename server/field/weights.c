@@ -279,6 +279,7 @@ void weights_destroy(struct weights **weights_ptr)
     mem_free(weights->total);
     mem_free(weights->place);
     mem_free(weights->lost);
+    mem_free(weights->blind_marks);
     mem_free(weights->known);
     mem_free(weights->columns);
     mem_free(weights->kept);

@@ -90,6 +90,8 @@ struct weights {
        drawn_error.h; NULL: not measured */
     float *errors;
     float *interpolation_errors; /* `errors` without the part due to errors of distances; NULL: `errors` has no such part */
+    /* [vertex]: 1: a triangle at the vertex shows SHOW_BLIND with a larger error than drawn_error_mark() accepts; NULL: not measured */
+    uint8_t *blind_marks;
     float largest_error;         /* largest element of `errors`, without WEIGHTS_SHOWS_NO_DATA */
     /* erring[b]: fraction of the surface (for prepared interpolations: of the vertices) whose interpolation error is at least
        2^-b; the largest over all measured levels of detail */

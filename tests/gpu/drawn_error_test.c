@@ -523,6 +523,77 @@ TEST(test_a_field_per_fragment_marks_long_triangles)
     stand_finish(&stand);
 }
 
+struct near_tally {
+    int compared, marked, marked_right;
+    double worst, worst_marked; /* largest error of unmarked and of marked pixels, as a share of the colour scale */
+};
+
+/* Compares pixels with picks, which evaluate the distance at their place. */
+static void compare_near(const struct stand *stand, const struct view *view, struct near_tally *tally)
+{
+    const struct scale scale = { .min = view->range_min, .max = view->range_max, .log = view->color_scale.log };
+    float(*measured)[4] = mem_array(PIXELS, sizeof(*measured));
+    assert_true(renderer_measure(stand->renderer, view, stand->snapshot, true, measured));
+    for (int i = 0; i < PICKS; i++) {
+        int x = (int)between(0, WIDTH_PX), y = (int)between(0, HEIGHT_PX);
+        const float *pixel = measured[y * WIDTH_PX + x];
+        struct pick pick;
+        pick_at(&stand->toy->scene, stand->field, view, stand->snapshot, x + 0.5, y + 0.5, &pick);
+        if (pick.asset < 0 || pixel[1] != 0 || pick.state == PICK_NO_DATA)
+            continue;
+        double drawn = scale.min + (double)pixel[0] * (scale.max - scale.min);
+        double off = fabs(fmin(fmax(scale_place(&scale, fmax(drawn, 1e-9)), 0), 1) - fmin(fmax(scale_place(&scale, pick.value), 0), 1));
+        bool marked = pixel[2] > 0.5f;
+        tally->compared++;
+        tally->marked += marked;
+        tally->marked_right += marked && off <= STEP;
+        *(marked ? &tally->worst_marked : &tally->worst) = fmax(marked ? tally->worst_marked : tally->worst, off);
+    }
+    mem_free(measured);
+}
+
+/* Distances along a surface, and the blind places that follow from them, are interpolated between corners. Where that is off by
+   more than `limit` of the colour scale, pictures mark it. The plate consists half of strips and half of small triangles. */
+static void expect_near_marks(enum field_show show, double limit)
+{
+    struct near_tally tally = { 0 };
+    random_state = sweep_seed();
+    for (int round = 0; round < sweep(8, 2); round++) {
+        struct toy *toy = toy_create();
+        struct test_shape shape = { 0 };
+        struct stand stand;
+        struct view view;
+        double places[SENSORS][3];
+        make_plate(&shape, SIDE_M / 2, SENSORS, places);
+        toy->plant.groups[0].hot_spot_m = 0.7;
+        toy_add(toy, "PLATE", &shape, (double[3]){ 0, 0, 0 }, (const double(*)[3])places, SENSORS);
+        stand_init(&stand, &rig, toy);
+        fill(stand.snapshot, SENSORS, 0);
+        view_default(&toy->scene, WIDTH_PX, HEIGHT_PX, &view);
+        field_params_set_show(&toy->plant, &view.field, show);
+        view.field.distance = DISTANCE_GEODESIC;
+        view.field.sensor = 2;
+        view_default_scale(&toy->scene, &view);
+        look(&toy->scene, &view);
+        compare_near(&stand, &view, &tally);
+        stand_finish(&stand);
+    }
+    print_message("# %d pixels, unmarked ones off by %.2f steps, %d marked ones by %.1f, %d of these right\n", tally.compared,
+                  tally.worst / STEP, tally.marked, tally.worst_marked / STEP, tally.marked_right);
+    assert_true(tally.compared > 500 && tally.worst <= 1.1 * limit && tally.worst_marked > limit);
+    assert_true(tally.marked > tally.compared / 10 && tally.compared - tally.marked > tally.compared / 10);
+}
+
+TEST(test_distances_along_surfaces_are_marked)
+{
+    expect_near_marks(SHOW_DISTANCE, STEP);
+}
+
+TEST(test_blind_places_along_surfaces_are_marked)
+{
+    expect_near_marks(SHOW_BLIND, 0.1);
+}
+
 /* Makes a square plate of two triangles with two small boxes, one for each sensor, near its corner, and a plate of small triangles
    beside this corner. */
 static void make_pair(struct test_shape *shape, double (*places)[3])

@@ -98,8 +98,9 @@ static bool shows_unknown_direction(const struct pen *pen)
     return false;
 }
 
-/* Chooses the rows of the legend below the colour bar. Distances, and quantities that are computed without readings, have no row
-   "uncertain". They have a row "below range" only if the view's range begins above their minimum. */
+/* Chooses the rows of the legend below the colour bar. Distances, and quantities that are computed without readings, have a row
+   "uncertain" only if they are interpolated from distances along surfaces. They have a row "below range" only if the view's range
+   begins above their minimum. */
 static void choose_rows(const struct pen *pen, struct legend *legend)
 {
     const struct view *view = &pen->view;
@@ -112,7 +113,7 @@ static void choose_rows(const struct pen *pen, struct legend *legend)
     else if (of_readings || view->range_min > 1.001 * least)
         legend->rows[legend->row_count++] = ROW_BELOW;
     legend->rows[legend->row_count++] = ROW_NO_DATA;
-    if (of_readings)
+    if (of_readings || (view->field.show != SHOW_UNCERTAINTY && view->field.distance != DISTANCE_EUCLIDEAN))
         legend->rows[legend->row_count++] = ROW_UNCERTAIN;
     if (shows_unproven(pen))
         legend->rows[legend->row_count++] = ROW_UNPROVEN;

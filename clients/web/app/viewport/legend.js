@@ -68,8 +68,8 @@ function at(element, place) {
 // [title, suffix, note]. coverage.js has those for rarely used values.
 export const TITLES = { distance: (name, { sensor }) => [say('legend.distance', { tag: sensor ?? '–' })] };
 // Lowest value of a picture, as a fraction of the group's range, by the value of the parameter `show`. Pictures with such a value
-// do not depend on readings, so no place in them is uncertain. The smallest hot spot that a sensor would show (`blind`) is 5 % of
-// the range directly at a sensor; a margin for rounding is added.
+// do not depend on readings. Places in them are uncertain only if they are interpolated from distances along surfaces. The
+// smallest hot spot that a sensor would show (`blind`) is 5 % of the range directly at a sensor; a margin for rounding is added.
 const LEAST = { distance: 0, uncertainty: 0, blind: 0.05005 };
 const LIMIT_PLACES = { LL: -2, L: -1, H: 1, HH: 2 };
 
@@ -252,11 +252,13 @@ export class Legend {
         const noData = pixels((x, y, height) => hatchAt(x, y, height, period(height)));
         const uncertain = pixels((x, y, height) => stippleAt(x, y, height, period(height), colour));
         const noLimits = pixels((x, y, height) => ruleAt(y, height, period(height)));
-        return make('div', { class: 'keys' },
-            ...(show === 'operator' ? [swatch(18, 14, noLimits), make('span', {}, say('legend.nolimits'))] : []),
-            swatch(18, 14, noData), make('span', {}, say('legend.nodata')),
-            ...(show in LEAST ? [] : [swatch(18, 14, uncertain), make('span', {}, say('legend.uncertain'))]),
-            ...(this.unproven(params) ? [swatch(18, 14, brokenMark), make('span', {}, say('proof.none'))] : []),
-            ...(this.assumed(params) ? [swatch(18, 14, doubleMark), make('span', {}, say('proof.assumed'))] : []));
+        return make('div', { class : 'keys' },
+                    ...(show === 'operator' ? [ swatch(18, 14, noLimits), make('span', {}, say('legend.nolimits')) ] : []),
+                    swatch(18, 14, noData), make('span', {}, say('legend.nodata')),
+                    ...(show in LEAST && (show === 'uncertainty' || params.distance === 'euclidean')
+                            ? []
+                            : [ swatch(18, 14, uncertain), make('span', {}, say('legend.uncertain')) ]),
+                    ...(this.unproven(params) ? [ swatch(18, 14, brokenMark), make('span', {}, say('proof.none')) ] : []),
+                    ...(this.assumed(params) ? [ swatch(18, 14, doubleMark), make('span', {}, say('proof.assumed')) ] : []));
     }
 }
