@@ -10,7 +10,7 @@ struct Sensor {
 };
 layout(std430, binding = 5) readonly buffer Sensors {
     // x: exponent of interpolation shepard; y: radius in metres of Algorithm 1; z: reach in metres, the distance beyond which a
-    // sensor has no influence; w: lower end MIN of the group's range
+    // sensor has no influence; w: lower end MIN of the group's range, or the largest value that a hot spot may have
     vec4 numbers;
     // x: factor MAX - MIN of the range, which scales Algorithm 1's sum to a value, or 0; y: vertex count of the asset, or with
     // PIXEL_FIELD the number of usable sensors, which are the first ones in `sensors`; z, w (only if the smallest visible hot

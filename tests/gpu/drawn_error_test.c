@@ -454,6 +454,57 @@ TEST(test_odd_shapes_with_many_sensors_are_exact)
     expect_odd_shapes(CROWD);
 }
 
+/* Returns the height that a hot spot needs at a pixel for a sensor to show it, as a share of the range. */
+static double hot_spot_at(const struct drawn_error_case *site, const struct view *view, double x, double y)
+{
+    struct pick pick;
+    struct pixel_field pixels;
+    struct pixel_value value = { 0 };
+    pick_at(site->scene, site->field, view, site->snapshot, x, y, &pick);
+    const float at_m[3] = { (float)pick.position_m[0], (float)pick.position_m[1], (float)pick.position_m[2] };
+    field_pixels(site->field, 0, &view->field, &pixels);
+    assert_true(pixels.show == PIXEL_BLIND);
+    pixel_field_at(&pixels, at_m, &value);
+    pixel_field_finish(&pixels);
+    return pick.asset < 0 ? (double)NAN : ((double)value.value - view->range_min) / (view->range_max - view->range_min);
+}
+
+TEST(test_hot_spots_are_exact)
+{
+    struct stand stand;
+    struct view view;
+    int compared = 0;
+    double least = INFINITY, most = -INFINITY;
+    float(*measured)[4] = mem_array(PIXELS, sizeof(*measured));
+    stand_on_plate(&stand, &view, 0);
+    stand.toy->plant.groups[0].hot_spot_m = 0.3;
+    fill(stand.snapshot, MANY, 0);
+    view.field.distance = DISTANCE_EUCLIDEAN;
+    field_params_set_show(&stand.toy->plant, &view.field, SHOW_BLIND);
+    view_default_scale(&stand.toy->scene, &view);
+    assert_true(renderer_measure(stand.renderer, &view, stand.snapshot, true, measured));
+    struct drawn_error_case site = { &stand.toy->scene, stand.field, stand.renderer, stand.snapshot };
+    for (int i = 0; i < PICKS; i++) {
+        int x = (int)between(1, WIDTH_PX - 1), y = (int)between(1, HEIGHT_PX - 1);
+        double low = INFINITY, high = -INFINITY, drawn = (double)measured[y * WIDTH_PX + x][0];
+        for (int corner = 0; corner < 4; corner++) { /* the four corners of a pixel enclose what its centre shows */
+            double here = hot_spot_at(&site, &view, x + corner % 2, y + corner / 2);
+            low = fmin(low, isnan(here) ? -INFINITY : here);
+            high = fmax(high, here);
+        }
+        if (measured[y * WIDTH_PX + x][1] != 0 || low == -INFINITY || high - low > 20 * STEP)
+            continue;
+        compared++;
+        least = fmin(least, drawn);
+        most = fmax(most, drawn);
+        assert_true(drawn >= low - STEP && drawn <= high + STEP);
+    }
+    print_message("# %d pixels, from %.2f to %.2f of the range\n", compared, least, most);
+    assert_true(compared > 50 && least < 0.1 && most > 0.5);
+    mem_free(measured);
+    stand_finish(&stand);
+}
+
 /* The frame states its largest drawing error: on this plate more than 1 if neighbouring readings differ by 40, and 0 if all
    readings are equal. */
 TEST(test_equal_readings_mark_nothing)

@@ -98,7 +98,9 @@ GLuint reference_pixel_sensors(struct log *log, const struct pixel_field *field)
     *head = (struct sensors_head){ .power = field->power,
                                    .radius_m = field->radius_m,
                                    .reach_m = field->reach_m,
-                                   .empty = field->paper ? field->offset : field->empty,
+                                   .empty = field->show == PIXEL_BLIND ? field->most
+                                            : field->paper             ? field->offset
+                                                                       : field->empty,
                                    .range = field->scale,
                                    .hot_spot_m = field->hot_spot_m,
                                    .seen = field->seen,
