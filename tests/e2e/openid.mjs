@@ -4,6 +4,7 @@
 import assert from 'node:assert/strict';
 import { chmodSync, existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { createServer, request } from 'node:http';
+import { createServer as createTcpServer } from 'node:net';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { openPage, shoot, waitForPicture } from './support/browser.mjs';
@@ -248,8 +249,12 @@ test('while the provider is away, signed-in users stay, nobody new signs in, and
     const { port: its } = provider;
     const waiting = await browser.begin();
     await provider.close();
+    let checks = 0;
+    const away = createTcpServer((socket) => { checks++; socket.destroy(); });
+    await new Promise((done) => away.listen(its, '127.0.0.1', done));
     await plant.daemon.line(/openid: http.*users cannot sign in by OpenID Connect; signed-in users stay signed in/);
-    await sleep(2500);
+    await until('three failed checks of rights', () => checks >= 3);
+    await new Promise((done) => away.close(done));
     assert.equal(client.closed, null);
     assert.equal((await browser.me()).role, 'operator');
     const answer = await browser.get(waiting);
@@ -304,12 +309,15 @@ const sumsSince = (began) => 2 + 2 * Math.floor((performance.now() - began) / 60
 
 test('thousands of forged sign-in answers leave one log line, and lock nobody out', { skip, timeout: 120000 }, async () => {
     const lines = refusals(), began = performance.now();
+    let person = null;
     const guess = async () => {
-        for (let i = 0; i < 500; i++)
+        for (let i = 0; i < 500; i++) {
             assert.equal((await askFrom('127.0.0.9', '/login/callback?state=x&code=y')).statusCode, 403);
+            person ??= i === 10 ? new Browser().signIn() : null;
+        }
     };
-    const [, , , , person] = await Promise.all([guess(), guess(), guess(), guess(), sleep(300).then(() => new Browser().signIn())]);
-    assert.equal(person.status, 303);
+    await Promise.all([guess(), guess(), guess(), guess()]);
+    assert.equal((await person).status, 303);
     await recorded('their sum', (line) =>
         /^\d+ answers of the identity provider were rejected: they belonged to no sign-in/.test(line.what ?? ''));
     assert.ok(refusals() - lines <= sumsSince(began), String(refusals() - lines));
@@ -341,14 +349,16 @@ test("provider errors and cancelled sign-ins slow nobody, and tokens still work"
 
 test('made-up codes slow their own address, and others sign in meanwhile', { skip, timeout: 120000 }, async () => {
     const lines = refusals(), began = performance.now();
-    let slowed = 0;
+    let slowed = 0, person = null;
     const guess = async () => {
-        for (let i = 0; i < 100; i++)
+        for (let i = 0; i < 100; i++) {
             if ((await (await beginFrom('127.0.0.8'))(`code=made-up-${i}`)).statusCode === 429)
                 slowed++;
+            person ??= slowed > 0 ? new Browser().signIn() : null;
+        }
     };
-    const [, , person] = await Promise.all([guess(), guess(), sleep(200).then(() => new Browser().signIn())]);
-    assert.equal(person.status, 303);
+    await Promise.all([guess(), guess()]);
+    assert.equal((await person).status, 303);
     // largest number of guesses that the server may check: ten at once, then one per 5 s, plus a margin of ten
     const checked = 20 + (performance.now() - began) / 5000;
     assert.ok(200 - slowed <= checked, `${slowed} of 200 guesses were slowed`);
@@ -446,7 +456,8 @@ test('a user who leaves all pages idle is signed out, after a notice', {
     skip: skip || (existsSync(process.env.CHROMIUM ?? '/usr/bin/chromium') ? false : 'chromium is not installed'), timeout: 120000,
 }, async (t) => {
     writeFileSync(path('notice'), 'This system is for authorised people of the works only.\nWhat you do is recorded.\n');
-    await start('--lock-after', '0.15', '--notice', path('notice'));
+    const LOCK_MS = 6000;
+    await start('--lock-after', String(LOCK_MS / 60000), '--notice', path('notice'));
     t.after(() => start());
     const { page, close } = await openPage(`http://127.0.0.1:${port}/?lang=en`, { viewport: { width: 1000, height: 700 } });
     try {
@@ -454,9 +465,14 @@ test('a user who leaves all pages idle is signed out, after a notice', {
         assert.match(await page.locator('#token .notice').textContent(), /authorised people/);
         await shoot(page, 'sign-in-notice');
         await page.locator('#token .sign-in').click();
-        await waitForPicture(page);
-        for (let i = 0; i < 14; i++, await sleep(1000)) // simulates activity of the user
-            await page.mouse.move(400 + i, 300);
+        const began = performance.now();
+        let moves = 0, isThere = false;
+        const picture = waitForPicture(page).then(() => { isThere = true; });
+        await until('activity for longer than the lock time', async () => {
+            await page.mouse.move(400 + ++moves % 100, 300);
+            return isThere && performance.now() - began > LOCK_MS + 2000;
+        });
+        await picture;
         assert.equal(await page.locator('#token').evaluate((dialog) => dialog.open), false);
         await page.locator('#token .sign-in').waitFor(); // no more mouse moves: the page must now sign the user out
         assert.equal(await page.locator('.stage').evaluate((stage) => getComputedStyle(stage).visibility), 'hidden');
