@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A tour of an operator's page: overview, alarm, flight to it, trend, past, acknowledgement, sharing. Reduced copies of its
-// screenshots are in the README (deploy/pictures).
+// screenshots are in the README (deploy/pictures). With screenshots, the tour is repeated on every kind of screen;
+// bench/notes/tour.md says what these show.
 import assert from 'node:assert/strict';
 import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { test } from 'node:test';
-import { arrive, openPage, SCREENSHOTS, settle, SHOOTS, waitForHealth, waitForPicture } from '../support/browser.mjs';
+import {
+    arrive, openPage, PHONE, SCREENSHOTS, settle, SHOOTS, TABLET, waitForHealth, waitForPicture, withPage,
+} from '../support/browser.mjs';
 import { missing, startPlant } from '../support/plant.mjs';
 import { promise } from '../support/promise.mjs';
 import { setUp } from '../support/set_up.mjs';
@@ -125,4 +128,47 @@ test('sharing gives a link and a QR code to this view', options, async (t) => {
     t.diagnostic(`the tour took ${(took / 1000).toFixed(0)} s`);
     promise(t, 'the tour', took, MOST_MS);
     assert.deepEqual(browser.errors, []);
+});
+
+const sized = (screen, width, height) => ({ ...screen, viewport: { width, height } });
+const SCREENS = {
+    'desk-1600': [sized({}, 1600, 900), ''], 'desk-1600-dark': [sized({}, 1600, 900), 'theme=dark'],
+    'desk-1280': [sized({}, 1280, 800), ''], 'desk-1280-dark': [sized({}, 1280, 800), 'theme=dark'],
+    'desk-german': [sized({}, 1280, 800), 'lang=de'], 'desk-korean': [sized({}, 1600, 900), 'lang=ko'],
+    tablet: [TABLET, ''], 'tablet-german': [sized(TABLET, 1280, 800), 'lang=de'], 'tablet-upright': [sized(TABLET, 768, 1024), 'lang=ko'],
+    phone: [PHONE, ''], 'phone-low': [sized(PHONE, 360, 640), 'lang=de'], 'phone-across': [sized(PHONE, 844, 390), 'lang=ko'],
+    'zoom-200': [sized({}, 640, 400), 'lang=de'], wall: [sized({}, 1920, 1080), 'wall'],
+};
+// The steps of the tour: what opens a part of the page, and the part. Clicks are sent to elements that may be behind the button for more.
+const press = (on, ...selectors) => on.evaluate((all) => all.forEach((one) => document.querySelector(one).click()), selectors);
+const STEPS = {
+    overview: [() => {}, '#viewport'],
+    alarms: [(on) => press(on, '#alarm-strip'), '#alarms-list tr'],
+    journal: [(on) => press(on, '#journal-tab'), '#journal-list tr'],
+    card: [(on) => press(on, '#alarms-tab', '#alarms-list .alarm-go'), '#card'],
+    trend: [(on) => on.evaluate((name) => globalThis.plantcast.showTrend(globalThis.plantcast.session.model.tag(name)), HOT),
+        '#trend-chart canvas'],
+    past: [async (on) => {
+        await press(on, '#time-toggle');
+        await on.locator('#time-slider').waitFor();
+        await press(on, '#hold');
+    }, '#banner[data-kind="past"]'],
+    views: [(on) => press(on, '#time-live', '#trend-close', '#time-toggle', '#views-toggle'), '#views.open'],
+    picture: [(on) => press(on, '#views-toggle', '#picture-toggle'), '#picture-panel.open'],
+};
+
+const skip = why ?? (SHOOTS ? false : 'set PLANTCAST_SHOTS=1');
+test('each step of the tour opens on every kind of screen', { skip, timeout: 900000 }, async () => {
+    for (const [name, [screen, query]] of Object.entries(SCREENS))
+        await withPage(`${plant.url}?${query}`, screen, async (on) => {
+            await waitForPicture(on);
+            await on.waitForFunction(() => globalThis.plantcast.session.recorded &&
+                globalThis.plantcast.session.model.alarms.list().length > 0);
+            for (const [step, [open, part]] of Object.entries(STEPS).slice(0, name === 'wall' ? 1 : undefined)) {
+                await open(on);
+                await on.locator(part).first().waitFor();
+                await arrive(on);
+                await on.screenshot({ path: join(SCREENSHOTS, `tour-${name}-${step}.png`) });
+            }
+        });
 });
