@@ -29,7 +29,7 @@ static inline bool history_point_joined(const struct history_point *a, const str
 }
 
 /* printf() formats of the texts by which a month's file notes a gap or a step of the clock; the argument is a duration in seconds. */
-#define HISTORY_GAP_TEXT "not recorded for %.0f s"
+#define HISTORY_GAP_TEXT "not recorded for %.1f s"
 #define HISTORY_FORWARD_TEXT "the clock was set forward by %.1f s"
 #define HISTORY_BACK_TEXT "the clock was set back by %.1f s"
 

@@ -81,14 +81,15 @@ bool postgres_restore_end_lines(struct postgres_tables *tables, int64_t now_us)
         "BEGIN;"
         "INSERT INTO sample SELECT n.* FROM newest n JOIN tag g ON g.id = n.tag WHERE g.plant = %1$d ON CONFLICT DO NOTHING;"
         "DELETE FROM newest USING tag g WHERE g.id = newest.tag AND g.plant = %1$d;"
-        "INSERT INTO event SELECT %1$d, t, 'gap', format('not recorded for %%s s', extract(epoch FROM to_timestamp(%3$lld) - t)::bigint)"
+        "INSERT INTO event SELECT %1$d, t, 'gap', format('not recorded for %%s s',"
+        " extract(epoch FROM 'epoch'::timestamptz + %3$lld * interval '1 microsecond' - t)::numeric(14, 1))"
         " FROM (SELECT max(l.t) AS t FROM tag g,"
         " LATERAL (SELECT t FROM sample WHERE tag = g.id ORDER BY t DESC LIMIT 1) l WHERE g.plant = %1$d) x WHERE t IS NOT NULL"
         " ON CONFLICT DO NOTHING;"
         "INSERT INTO sample SELECT g.id, l.t + interval '1 microsecond', NULL, %2$u FROM tag g,"
         " LATERAL (SELECT t, q FROM sample WHERE tag = g.id ORDER BY t DESC LIMIT 1) l WHERE g.plant = %1$d AND l.q <> %2$u;"
         "COMMIT";
-    return postgres_link_runf(tables->link, sql, tables->plant, QUALITY_BAD_NO_COMMUNICATION, (long long)(now_us / US_PER_S));
+    return postgres_link_runf(tables->link, sql, tables->plant, QUALITY_BAD_NO_COMMUNICATION, (long long)now_us);
 }
 
 /* Corrects the ends of recorded lines within a time span. This daemon wrote a gap mark after the last point that it knew. If
