@@ -9,6 +9,7 @@ import { join, resolve } from 'node:path';
 import { test } from 'node:test';
 import { freePort } from './support/ports.mjs';
 import { BIN, missing, Program, sleep, TinyPlant } from './support/tiny_plant.mjs';
+import { until } from './support/until.mjs';
 
 const RULES = resolve('deploy/prometheus'), absent = missing();
 const noPrometheus = spawnSync('promtool', ['--version']).status !== 0 && 'prometheus is not installed';
@@ -33,20 +34,22 @@ const EMPTY = /plantcast_core|plantcast_renderers|notify|certificate|backup|hist
 test('Prometheus scrapes a daemon and loads the rules, and every panel\'s query finds data',
     { skip: noPrometheus || (absent.length > 0 ? `not built: ${absent.join(', ')}` : false), timeout: 200000 }, async () => {
         const folder = mkdtempSync(join(tmpdir(), 'plantcast-prometheus-')), port = await freePort(), plant = await TinyPlant.running();
-        writeFileSync(join(folder, 'prometheus.yml'), readFileSync(join(RULES, 'prometheus.yml'), 'utf8').replace('15s', '1s')
+        writeFileSync(join(folder, 'prometheus.yml'), readFileSync(join(RULES, 'prometheus.yml'), 'utf8').replace('15s', '500ms')
             .replace('15s', '1s').replace('rules.yml', join(RULES, 'rules.yml')).replace('127.0.0.1:8080', `127.0.0.1:${plant.port}`));
         const prometheus = spawn('prometheus', [`--config.file=${join(folder, 'prometheus.yml')}`,
             `--storage.tsdb.path=${join(folder, 'data')}`, `--web.listen-address=127.0.0.1:${port}`], { stdio: 'ignore' });
         const ask = async (path) => (await fetch(`http://127.0.0.1:${port}/api/v1/${path}`)).json();
         const query = (expr) => ask(`query?query=${encodeURIComponent(expr)}`);
         try {
-            for (const end = Date.now() + 90000; Date.now() < end; await sleep(500)) {
+            await until('ten scrapes', async () => {
                 const { data } = await query('count_over_time(plantcast_build_info[1m])').catch(() => ({}));
-                if (Number(data?.result?.[0]?.value?.[1]) >= 10)
-                    break;
-            }
-            const { data: { groups } } = await ask('rules');
-            for (const rule of groups.flatMap(({ rules }) => rules))
+                return Number(data?.result?.[0]?.value?.[1]) >= 10;
+            });
+            const rules = await until('evaluated rules', async () => {
+                const all = (await ask('rules')).data.groups.flatMap(({ rules: some }) => some);
+                return all.length > 0 && all.every(({ health }) => health !== 'unknown') && all;
+            });
+            for (const rule of rules)
                 assert.equal(rule.health, 'ok', `${rule.name}: ${rule.lastError}`);
             for (const name of ['operations', 'cores', 'alarms']) {
                 const { panels, templating } = JSON.parse(readFileSync(resolve(`deploy/grafana/${name}.json`), 'utf8'));
