@@ -14,7 +14,7 @@ import { alteredFilms } from './support/mp4_boxes.mjs';
 import { chunksOf, pngOf, textOf, withRows, withText } from './support/png_chunks.mjs';
 import { PlainClient } from './support/plain_client.mjs';
 import { setUp } from './support/set_up.mjs';
-import { notBuilt, runProgram, sleep, TinyPlant } from './support/tiny_plant.mjs';
+import { notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 import { until } from './support/until.mjs';
 
 const noFfmpeg = spawnSync('ffmpeg', ['-version']).status === 0 ? false : 'ffmpeg is not there';
@@ -370,11 +370,13 @@ const recorded = (compare) => {
 };
 
 test('a signed picture of the past agrees with the recorded history', { skip }, async () => {
-    await sleep(1000);
-    const then = new Date().toISOString();
+    const then = new Date(Date.now() - 6000); // the newest 4 s count as the present
     await plant.tell('set TI-1 30');
-    await sleep(4500);
-    const past = await fetchPicture(`width=640&height=400&at=${then}`);
+    await until('the later value in the history', async () => {
+        const url = `http://127.0.0.1:${plant.port}/api/v1/history?tags=TI-1&from=${then / 1000}&to=${Date.now() / 1000}&points=1000`;
+        return (await (await fetch(url)).json()).series[0].points.some(([, value]) => value === 30);
+    });
+    const past = await fetchPicture(`width=640&height=400&at=${then.toISOString()}`);
     const { out } = await recorded(() => redraw(past, '--history', path('plant.history')));
     assert.match(out, /\(history\)/);
     assert.match(out, /3 of 3 readings in the picture agree with the recorded history/);
