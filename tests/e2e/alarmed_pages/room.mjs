@@ -6,7 +6,7 @@ import { readFileSync, writeFileSync } from 'node:fs';
 import { before, test } from 'node:test';
 import { alarmed } from './alarmed.mjs';
 import {
-    arrive, keepMediaQueries, land, openPage, PHONE, pixelRatioOf, resize, shoot, TABLET, waitForPicture, withPage,
+    arrive, keepMediaQueries, land, openPage, PHONE, pixelRatioOf, resize, settle, shoot, TABLET, waitForPicture, withPage,
 } from '../support/browser.mjs';
 import { startAlarmed } from '../support/panels.mjs';
 import { sweep, takes } from '../support/sweep.mjs';
@@ -318,6 +318,37 @@ test('a card is never under a panel; a pressed sensor\'s card replaces a panel t
             }
         });
     }
+});
+
+// In a split view, the left half's legend lies near the middle of the picture, so that there may be little room on either side of it.
+test('no legend hides the card of a sensor in a split view without open panels', options, async () => {
+    for (const [width, height] of [[1024, 768], [740, 560]])
+        await withPage(`${url}?lang=de`, { viewport: { width, height } }, async (page) => {
+            await waitForPicture(page);
+            await arrive(page);
+            for (const split of [null, { show: 'operator' }]) {
+                await page.evaluate((to) => {
+                    const { selectTag, session } = globalThis.plantcast;
+                    session.setParams({ split: to });
+                    selectTag(session.model.tag('TI-1'));
+                }, split);
+                await page.locator('#legend-right').waitFor({ state: split ? 'visible' : 'hidden' });
+                for (const lists of ['no list', 'the alarm list']) {
+                    await page.locator('#alarms').waitFor({ state: lists === 'no list' ? 'hidden' : 'visible' });
+                    await settle(page);
+                    // waits for a picture of the new size, and until the card is moved for it
+                    await page.waitForFunction(() => {
+                        const { session: { picture }, viewport } = globalThis.plantcast;
+                        return Math.abs(picture.fullWidth - viewport.width * devicePixelRatio) <= 2;
+                    });
+                    await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+                    const name = `${width}x${height}, ${split ? 'split' : 'whole'}, ${lists}`;
+                    await becomes(async () => (await cardOf(page)).isSeen, true, name, 20);
+                    await shoot(page, `card-legend-${name.replaceAll(/\W+/g, '-')}`);
+                    await page.locator('#alarm-strip').click();
+                }
+            }
+        });
 });
 
 // Makes the browser observe sizes in CSS pixels only, as Safari does.

@@ -55,13 +55,15 @@ export function placeInPicture({ picture, shown }, { width, height }, position, 
 }
 
 // Returns the left and right edge of the part of the picture that the legend and the open panels leave free, and the lower edge of a legend
-// that lies across the top of the picture. An open panel may have moved the legend to the left edge (common/panel.css).
+// that lies across the top of the picture. An open panel may have moved the legend to the left edge (common/panel.css). A legend that
+// would leave too little room by itself is ignored: the card may cover it. On walls, the legend is next to the picture.
 function freeBeside(width) {
-    const legend = byId('legend'), { offsetLeft: left, offsetWidth: wide } = legend;
-    const lies = wide > width / 2, free = { left: 0, right: width };
-    if (!legend.hidden && wide > 0 && !lies)
-        Object.assign(free, left <= LEGEND_PX ? { left: left + wide } : { right: left });
-    const picture = byId('viewport').getBoundingClientRect();
+    const viewport = byId('viewport'), legend = byId('legend'), { offsetLeft: left, offsetWidth: wide } = legend;
+    const isOver = viewport.contains(legend) && !legend.hidden && wide > 0, lies = isOver && wide > width / 2;
+    const beside = left <= LEGEND_PX ? { left: left + wide, right: width } : { left: 0, right: left };
+    const hasSpace = isOver && !lies && beside.right - beside.left >= LEAST_PX + 2 * RIM_PX;
+    const free = hasSpace ? beside : { left: 0, right: width };
+    const picture = viewport.getBoundingClientRect();
     for (const box of [...document.querySelectorAll(PANELS)].map((panel) => panel.getBoundingClientRect()))
         if (box.left < picture.right && box.right > picture.left && box.top < picture.bottom && box.bottom > picture.top)
             free.right = Math.min(free.right, box.left - picture.left);
