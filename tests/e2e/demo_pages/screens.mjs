@@ -130,6 +130,14 @@ test('desktop: two parameter sets side by side, each with legend and markers', o
     await page.locator('#legend-right').waitFor();
     assert.deepEqual(await page.locator('.legend:visible').evaluateAll((all) => all.map(({ id }) => id)), ['legend-right'],
         'halves with equal parameters share one legend');
+    // hot spots that no sensor would show are uncertain only with distances along surfaces: only that half's legend has the key
+    const set = (params) => page.evaluate((all) => globalThis.plantcast.session.setParams(all), params);
+    const uncertain = () => page.locator('.legend:visible').evaluateAll((all) => all.map((one) => /Uncertain/.test(one.textContent)));
+    for (const [distance, other, keys] of [['geodesic', 'euclidean', [true, false]], ['euclidean', 'geodesic', [false, true]]]) {
+        await set({ show: 'blind', distance, split: { show: 'blind', distance: other } });
+        await becomes(uncertain, keys, `${distance} beside ${other}`);
+    }
+    await set({ show: 'value', distance: 'geodesic', split: { show: 'value', distance: 'geodesic' } });
     await choose('right-group', 'pressure');
     await choose('isolines', { index: 2 });
     await settle(page);
@@ -427,7 +435,6 @@ test('phones: the button of a list that a card or a trend covers shows the list 
 // Google Maps places its bar and its sheets there, too.
 test('phones: one thumb opens and closes the alarm list, and reaches the controls that users press often', options, () => onScreen(PHONE,
     async (page) => {
-        const alarms = () => page.evaluate(() => globalThis.plantcast.session.model.alarms.counts().active);
         for (const [width, height] of PHONES) {
             const upright = height > width, name = `${width}x${height}`;
             await resize(page, { width, height });
@@ -440,7 +447,8 @@ test('phones: one thumb opens and closes the alarm list, and reaches the control
             }), often), [], name);
             const tools = await boxOf(page, '.actions');
             assert.ok(upright || tools.x + tools.width >= width - 1, `${name}: the column of tools is where the right thumb is`);
-            await becomes(async () => page.locator('#alarms-toggle').getAttribute('data-count'), String(await alarms() || ''), name, 20);
+            await becomes(() => page.evaluate(() => document.getElementById('alarms-toggle').dataset.count ===
+                String(globalThis.plantcast.session.model.alarms.counts().active || '')), true, name, 20);
             await page.locator('#alarms-toggle').tap();
             await visible(page, '#alarms');
             assert.equal(await page.locator('#alarms-toggle').getAttribute('aria-expanded'), 'true');

@@ -71,6 +71,8 @@ export const TITLES = { distance: (name, { sensor }) => [say('legend.distance', 
 // do not depend on readings. Places in them are uncertain only if they are interpolated from distances along surfaces. The
 // smallest hot spot that a sensor would show (`blind`) is 5 % of the range directly at a sensor; a margin for rounding is added.
 const LEAST = { distance: 0, uncertainty: 0, blind: 0.05005 };
+// Returns true if a picture with these parameters can have uncertain places.
+const uncertainIn = ({ show, distance }) => !(show in LEAST) || (show !== 'uncertainty' && distance !== 'euclidean');
 const LIMIT_PLACES = { LL: -2, L: -1, H: 1, HH: 2 };
 
 // Returns the legend's [title, suffix, note] for the shown group and the parameter `show`.
@@ -112,7 +114,7 @@ export class Legend {
     contents(params) {
         const { group, show, colormap, ramp_interval, scale, breaks, isolines, look, unit } = params;
         return JSON.stringify([group, show, this.title(params), colormap, ramp_interval, this.session.rangeOf(params), scale,
-            breaks, isolines, look, unit, this.unproven(params), this.assumed(params), this.session.drawnError]);
+            breaks, isolines, look, unit, uncertainIn(params), this.unproven(params), this.assumed(params), this.session.drawnError]);
     }
 
     show(again = false) {
@@ -252,13 +254,11 @@ export class Legend {
         const noData = pixels((x, y, height) => hatchAt(x, y, height, period(height)));
         const uncertain = pixels((x, y, height) => stippleAt(x, y, height, period(height), colour));
         const noLimits = pixels((x, y, height) => ruleAt(y, height, period(height)));
-        return make('div', { class : 'keys' },
-                    ...(show === 'operator' ? [ swatch(18, 14, noLimits), make('span', {}, say('legend.nolimits')) ] : []),
-                    swatch(18, 14, noData), make('span', {}, say('legend.nodata')),
-                    ...(show in LEAST && (show === 'uncertainty' || params.distance === 'euclidean')
-                            ? []
-                            : [ swatch(18, 14, uncertain), make('span', {}, say('legend.uncertain')) ]),
-                    ...(this.unproven(params) ? [ swatch(18, 14, brokenMark), make('span', {}, say('proof.none')) ] : []),
-                    ...(this.assumed(params) ? [ swatch(18, 14, doubleMark), make('span', {}, say('proof.assumed')) ] : []));
+        return make('div', { class: 'keys' },
+            ...(show === 'operator' ? [swatch(18, 14, noLimits), make('span', {}, say('legend.nolimits'))] : []),
+            swatch(18, 14, noData), make('span', {}, say('legend.nodata')),
+            ...(uncertainIn(params) ? [swatch(18, 14, uncertain), make('span', {}, say('legend.uncertain'))] : []),
+            ...(this.unproven(params) ? [swatch(18, 14, brokenMark), make('span', {}, say('proof.none'))] : []),
+            ...(this.assumed(params) ? [swatch(18, 14, doubleMark), make('span', {}, say('proof.assumed'))] : []));
     }
 }
