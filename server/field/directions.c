@@ -146,8 +146,8 @@ static struct direction find_one(const struct field_layout *layout, const float 
     float room;
     layout_point_init(&point, layout, place->corners, place->weights);
     for (size_t i = 0; i < layout->sensor_count; i++) {
-        double away_m =
-            spreads[i].configured ? (double)*layout_distances(&point.layout, params->distance, i, 0, 1, &room) : (double)INFINITY;
+        double away_m = spreads[i].configured ? (double)*layout_distances(&point.layout, field_params_distance(params), i, 0, 1, &room)
+                                              : (double)INFINITY;
         if (!(away_m <= params->reach_m) || !isfinite(away_m) || strength_of(layout, params, i) <= 0)
             continue;
         away_m = max_of(away_m, AT_ONE_PLACE);

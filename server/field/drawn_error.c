@@ -95,9 +95,11 @@ static bool sampler_init(struct sampler *sampler, const struct drawn_error_job *
     sampler->points.corners = mem_array(KERNEL_BLOCK, sizeof(*sampler->points.corners));
     sampler->points.parts = mem_array(KERNEL_BLOCK, sizeof(*sampler->points.parts));
     sampler->points.away_m = mem_array(KERNEL_BLOCK, sizeof(*sampler->points.away_m));
-    sampler->corners = mem_try_array(members * 3 * GROUP, sizeof(float));
     sampler->weights = weights_create(&sampler->layout, job->params, job->radius_m, job->usable, &(struct weights_key){ 0 });
     sampler->terms = (struct weights_terms){ job->members, job->ones, job->members_marked, members };
+    if (sampler->near)
+        return sampler->weights;
+    sampler->corners = mem_try_array(members * 3 * GROUP, sizeof(float));
     return sampler->corners && sampler->weights && weights_keep(sampler->weights, weights_column_bytes(sampler->weights)) > 0;
 }
 
@@ -117,13 +119,13 @@ static void sampler_finish(struct sampler *sampler)
 static void evaluate(struct sampler *sampler, size_t count)
 {
     struct weights *weights = sampler->weights;
-    weights->known[0] = 0;
-    memset(weights->kept, 0, weights->member_count);
-    memset(sampler->values, 0, count * sizeof(*sampler->values));
-    memset(sampler->total, 0, count * sizeof(*sampler->total));
+    weights->known[0] = sampler->near ? KNOWN_TOP : 0; /* only weights need `top` */
     weights_prepare(weights, 0, count);
     if (sampler->near)
         return;
+    memset(weights->kept, 0, weights->member_count);
+    memset(sampler->values, 0, count * sizeof(*sampler->values));
+    memset(sampler->total, 0, count * sizeof(*sampler->total));
     weights_add(weights, 0, count, &sampler->terms, &(struct weights_sums){ sampler->values, sampler->total, NULL });
     for (size_t j = 0; j < count; j++)
         sampler->total[j] = sampler->total[j] > 0 ? 1 / sampler->total[j] : 0;
@@ -149,8 +151,11 @@ static void evaluate_corners(struct sampler *sampler)
 
 static void enqueue(struct sampler *sampler, const struct triangle_piece *piece)
 {
-    if (sampler->pieces[piece->tri]++ >= MAX_PIECES)
+    if (sampler->pieces[piece->tri]++ >= MAX_PIECES) {
+        if (sampler->near && sampler->near->group) /* hot spots that no sample sees */
+            *sampler->errors[piece->tri] = 1;
         return;
+    }
     mem_grow(&sampler->queue, &sampler->capacity, sampler->queued + 1, sizeof(*sampler->queue));
     sampler->queue[sampler->queued++] = *piece;
 }
@@ -253,20 +258,27 @@ static void add_near_errors(struct sampler *sampler, const struct triangle_piece
     }
 }
 
-/* Returns true if a triangle needs no samples: its longest side is so short that interpolation is off by at most the accepted
-   error, or a corner has no distance. Because a distance changes by at most the length of the way, a distance interpolated within
-   the triangle is off by at most the mean of the lengths to the corners, weighted by the barycentric coordinates. This is at
-   most 1 / sqrt(3) of the longest side. */
+/* Returns true if a triangle needs no samples: a corner has no distance, or its longest side is so short that interpolation is off
+   by at most the accepted error (SHOW_BLIND: twice that). Because a distance changes by at most the length of the way, a distance
+   interpolated within the triangle is off by at most the mean of the lengths to the corners, weighted by the barycentric
+   coordinates. This is at most 1 / sqrt(3) of the longest side. */
 static bool is_even(const struct drawn_near *near, float longest_m, float nearest_m, float farthest_m)
 {
     float off_m = 0.58f * longest_m, low = scale_of(near, shown_at(near, fmaxf(nearest_m - off_m, 0)));
     return !isfinite(farthest_m) || scale_of(near, shown_at(near, farthest_m + off_m)) - low <= 2 * accepted_near(near);
 }
 
-/* Returns the length in metres above which a piece whose middle has this distance from the nearest sensor is halved. */
-static float longest_piece(const struct sampler *sampler, float step, float near_m)
+/* Returns whether a piece is halved. near_m: distance from its middle to the nearest sensor. */
+static bool is_long(const struct sampler *sampler, float step, float length_m, float near_m)
 {
-    return sampler->near && sampler->near->group ? STEP * (float)sampler->near->group->hot_spot_m : step * near_m;
+    const struct drawn_near *near = sampler->near;
+    if (!near)
+        return length_m > step * near_m;
+    if (!near->group)
+        return length_m > step * near_m && length_m > STEP_OF_COLOR * near->largest_m;
+    /* beyond `seen_m`, all values have the colour above the scale */
+    const float spot_m = (float)near->group->hot_spot_m, seen_m = spot_m * sqrtf(2 * logf(1 / (float)PLANT_SEEN_PART));
+    return length_m > STEP * spot_m && near_m - length_m < seen_m;
 }
 
 static void sample_group(struct sampler *sampler, float step)
@@ -296,7 +308,7 @@ static void sample_group(struct sampler *sampler, float step)
         else
             add_errors(sampler, taken, count);
         for (size_t j = 0; j < count; j++)
-            if (lengths_m[j] > longest_piece(sampler, step, sampler->weights->near_m[j]))
+            if (is_long(sampler, step, lengths_m[j], sampler->weights->near_m[j]))
                 split(sampler, &taken[j], begins[j], sampler->points.parts[j]);
     }
     sampler->queued = sampler->tri_count = 0;
@@ -371,22 +383,27 @@ static bool is_straight(const struct drawn_error_job *job, const uint32_t corner
 static void measure_some(void *arg, size_t begin, size_t end)
 {
     const struct drawn_error_job *job = arg;
-    struct sampler *sampler = mem_new(sizeof(*sampler));
+    struct sampler *sampler = NULL;
     uint32_t *indices = (uint32_t *)job->weights->layout->file->view.indices;
-    bool good = sampler_init(sampler, job);
+    bool good = true;
     float step = job->near ? STEP : STEP * fminf(1, MAX_POWER / job->weights->power);
-    /* out of memory: the errors stay unknown, so all are set to the maximum */
-    for (size_t t = job->first + begin; t < job->first + end && !good; t++)
-        job->errors[t] = 1;
-    for (size_t t = job->first + begin; t < job->first + end && good; t++) {
-        if (!is_straight(job, indices + 3 * t)) {
+    for (size_t t = job->first + begin; t < job->first + end; t++) {
+        bool straight = is_straight(job, indices + 3 * t);
+        if (!straight && !sampler) {
+            sampler = mem_new(sizeof(*sampler));
+            good = sampler_init(sampler, job);
+        }
+        if (!straight && good) {
             sampler->tris[sampler->tri_count] = indices + 3 * t;
             sampler->errors[sampler->tri_count++] = &job->errors[t];
+        } else if (!straight) { /* out of memory: the error stays unknown, so it is set to the maximum */
+            job->errors[t] = 1;
         }
-        if (sampler->tri_count == GROUP || (sampler->tri_count > 0 && t + 1 == job->first + end))
+        if (sampler && (sampler->tri_count == GROUP || (sampler->tri_count > 0 && t + 1 == job->first + end)))
             sample_group(sampler, step);
     }
-    sampler_finish(sampler);
+    if (sampler)
+        sampler_finish(sampler);
     mem_free(sampler);
 }
 

@@ -156,7 +156,8 @@ static int find_sensor(const struct field_layout *layout, int tag)
     return -1;
 }
 
-/* Marks the vertices of triangles on which distances along the surface from one sensor are not drawn to a colour step. */
+/* Marks the vertices of triangles on which distances along the surface from one sensor are drawn more than a colour step
+   off. */
 static void mark_distances(struct field *field, struct field_state *state, size_t sensor)
 {
     struct field_params params = state->params;
@@ -164,7 +165,7 @@ static void mark_distances(struct field *field, struct field_state *state, size_
     if (params.distance == DISTANCE_EUCLIDEAN)
         return;
     params.show = SHOW_VALUE;
-    params.interpolation = INTERPOLATION_SHEPARD;
+    params.interpolation = INTERPOLATION_PAPER; /* the distance from a sensor of strength 0 is shown too */
     params.reach_m = INFINITY;
     memset(state->usable, SENSOR_ASIDE, state->layout->sensor_count);
     state->usable[sensor] = SENSOR_USED;
@@ -172,7 +173,7 @@ static void mark_distances(struct field *field, struct field_state *state, size_
     struct weights *weights = weights_create(state->layout, &params, 1, state->usable, &(struct weights_key){ 0 });
     for (size_t v = 0; v < state->scalars.count; v++)
         near.largest_m = fmaxf(near.largest_m, state->at[v].value);
-    if (weights && marks && near.largest_m > 0)
+    if (weights && weights->member_count == 1 && marks && near.largest_m > 0)
         drawn_error_mark(weights, &params, state->usable, &near, marks, field->workers);
     for (size_t v = 0; v < state->scalars.count; v++)
         state->at[v].uncertain = !weights || !marks || marks[v] ? 255 : 0;
@@ -180,7 +181,8 @@ static void mark_distances(struct field *field, struct field_state *state, size_
     mem_free(marks);
 }
 
-/* Finds the vertices of triangles on which SHOW_BLIND is not drawn to a colour step, unless they are known. */
+/* Finds the vertices of triangles on which SHOW_BLIND is drawn with a larger error than drawn_error_mark() accepts, unless they are
+   known. */
 static void mark_blind(struct field *field, struct field_state *state)
 {
     struct weights *weights = state->weights;
@@ -248,7 +250,8 @@ bool field_begin_update(struct field *field, struct field_state *state, const st
     struct weights *weights = state->weights;
     if (state->params.show == SHOW_BLIND)
         mark_blind(field, state);
-    drawn_error_measure(weights, &state->params, state->usable, count, update_is_in_range(state), field->workers);
+    if (!field_params_cover(&state->params))
+        drawn_error_measure(weights, &state->params, state->usable, count, update_is_in_range(state), field->workers);
     uint64_t previous = weights->used;
     weights->used = field->tick;
     if (!state_is_behind(state) && state->scalars.ready >= count)

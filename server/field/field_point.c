@@ -59,6 +59,15 @@ static void point_distance(const struct field_state *state, const struct layout_
     out->value = out->no_data ? out->value : far_m;
 }
 
+/* Returns true if pictures mark a hot spot at this point as uncertain, because a corner of its triangle is marked. */
+static bool is_blind_off(const struct field_state *state, const struct layout_point *point)
+{
+    for (int k = 0; k < 3; k++)
+        if (weights_blind_off(state->weights, point->corners[0][k]))
+            return true;
+    return false;
+}
+
 /* Sums the sensors' weights at the point, multiplied by the readings from which the scalars were computed, with the same
    arithmetic as at vertices. Returns the largest change of the value due to errors of distances, for these readings. */
 static double point_sum(const struct field_state *state, const struct layout_point *point, struct field_point *out)
@@ -88,7 +97,7 @@ static double point_sum(const struct field_state *state, const struct layout_poi
         update_flags(state, weights, 0, total, uncertain, &at);
         out->value = state->params.show == SHOW_BLIND ? (double)update_blind(point->layout.group, weights->near_m[0]) : (double)shown;
         out->no_data = at.no_data;
-        out->uncertain = at.uncertain > 127;
+        out->uncertain = state->params.show == SHOW_BLIND ? is_blind_off(state, point) : at.uncertain > 127;
         const double factor = total > 0 ? drawn_error_of_distances(weights) : 0;
         for (uint32_t m = 0; m < weights->member_count && factor > 0; m++)
             values[m] = fabs(values[m] - value / total);
@@ -143,6 +152,6 @@ float *field_distances_at(struct field *field, int asset, const struct field_par
     point_init(&point, layout, place);
     float *distances_m = mem_array(layout->sensor_count, sizeof(*distances_m)), scratch;
     for (size_t i = 0; i < layout->sensor_count; i++)
-        distances_m[i] = *layout_distances(&point.layout, params->distance, i, 0, 1, &scratch);
+        distances_m[i] = *layout_distances(&point.layout, field_params_distance(params), i, 0, 1, &scratch);
     return distances_m;
 }

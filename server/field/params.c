@@ -45,6 +45,11 @@ bool field_params_cover(const struct field_params *params)
     return params->show == SHOW_UNCERTAINTY || params->show == SHOW_BLIND;
 }
 
+enum distance_mode field_params_distance(const struct field_params *params)
+{
+    return params->show != SHOW_DISTANCE && interpolation_is_prepared(params->interpolation) ? DISTANCE_GEODESIC : params->distance;
+}
+
 bool field_params_equal(const struct field_params *a, const struct field_params *b)
 {
     return memcmp(a, b, offsetof(struct field_params, overrides)) == 0 &&

@@ -51,6 +51,9 @@ void field_params_default(const struct plant *plant, int group, struct field_par
    `show: operator` (the position of each reading between its tag's limits): it is replaced by `harmonic`, or by `shepard` if
    `harmonic` is not prepared. Uncertainty uses `gp` wherever it is prepared. */
 void field_params_set_show(const struct plant *plant, struct field_params *params, enum field_show show);
+/* Returns how the distances from sensors are measured. Interpolations that plantcast-prep prepares have distances along the
+   surface. */
+enum distance_mode field_params_distance(const struct field_params *params);
 bool field_params_equal(const struct field_params *a, const struct field_params *b);
 /* Returns true if every sensor that the parameters name (`sensor`, overrides) belongs to the shown group and has a position. */
 bool field_params_placed(const struct plant *plant, const struct field_params *params);

@@ -236,8 +236,8 @@ void update_flags(const struct field_state *state, const struct weights *weights
     at->uncertain = uncertain_of(marked, total, spread);
     at->lacking = weights_lacking_at(weights, vertex, filled);
     const float error = weights->errors && !field_params_cover(&state->params) ? weights->errors[vertex] : 0;
-    const bool is_blind_off = blind && weights->blind_marks && weights->blind_marks[vertex];
-    if (is_blind_off || (double)error > state->error_limit || (error >= WEIGHTS_SHOWS_NO_DATA && !weights->prepared))
+    if ((blind && weights_blind_off(weights, vertex)) || (double)error > state->error_limit ||
+        (error >= WEIGHTS_SHOWS_NO_DATA && !weights->prepared))
         at->uncertain = FLAG;
 }
 

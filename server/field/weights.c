@@ -190,7 +190,7 @@ struct weights *weights_create(const struct field_layout *layout, const struct f
     weights->layout = layout;
     weights->interpolation = params->interpolation;
     /* interpolations prepared by plantcast-prep always use distances along the surface, whatever the user chose */
-    weights->distance = interpolation_is_prepared(params->interpolation) ? DISTANCE_GEODESIC : params->distance;
+    weights->distance = field_params_distance(params);
     weights->power = (float)params->power;
     weights->reach_m = (float)params->reach_m;
     weights->radius_m = radius_m;
@@ -388,6 +388,13 @@ uint8_t weights_lacking_at(const struct weights *weights, size_t vertex, bool fi
     uint8_t share = weights->beyond_m ? encode_lacking(weights, weights->beyond_m[vertex]) : 0;
     reach = share > reach ? share : reach;
     return filled || weights->lost[vertex] < reach ? reach : weights->lost[vertex];
+}
+
+bool weights_blind_off(const struct weights *weights, size_t vertex)
+{
+    if (weights->distance == DISTANCE_EUCLIDEAN || weights->layout->assumed || weights->member_count == 0)
+        return false;
+    return !weights->blind_marks || weights->blind_marks[vertex];
 }
 
 /* Returns whether a vertex has data. near_m, lost_m, no_limits_m: distances from the nearest usable sensor, from the nearest
