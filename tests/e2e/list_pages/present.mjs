@@ -148,6 +148,29 @@ test('a note for the shift needs no place; its author changes and ends it', opti
     await page.keyboard.press('Escape');
 });
 
+test('on a phone, a press on a sensor closes the panel of views, but not while a note is written there', options, async () => {
+    const { page } = desk;
+    const press = (tag) => page.evaluate((name) => {
+        const { handlers, overlay, selectTag, session } = globalThis.plantcast, marker = overlay.marker(session.model.tag(name));
+        selectTag(null);
+        handlers.click(marker.x, marker.y, 'touch');
+    }, tag);
+    const choice = (tag) => page.locator('#note-at option', { hasText: tag });
+    await resize(page, { width: 390, height: 844 });
+    await page.locator('#views-toggle').click();
+    await page.locator('#note-text').fill('Valve leaks');
+    await press('TI-1');
+    await choice('TI-1').waitFor({ state: 'attached' });
+    assert.ok(await page.locator('#note-text').isVisible());
+    assert.equal(await page.locator('#note-text').inputValue(), 'Valve leaks');
+    await shoot(page, 'present-note-phone');
+    await page.locator('#note-text').fill('');
+    await press('TI-2');
+    await page.locator('#views.open').waitFor({ state: 'detached' });
+    await page.evaluate(() => globalThis.plantcast.selectTag(null));
+    await resize(page, SCREEN.viewport);
+});
+
 test('note pins are complete, and cover no other pin, no legend and not the right half', options, async () => {
     const { page } = desk;
     const texts = ['Manhole open', 'Seal drips, the tray is emptied each hour by the outside operator of the shift', 'Hot'];

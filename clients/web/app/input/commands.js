@@ -134,19 +134,19 @@ function commandsOf({ session, viewport, modules, selection, overlay, saveAddres
         makeRoom();
     }
 
-    // Closes the panels below the toolbar.
-    function closePanels() {
+    // Closes the panels below the toolbar, but not those in `kept`.
+    function closePanels(kept = []) {
         for (const one of ['display', 'more'])
             modules.there('toolbarOverflow')?.[one].set(false);
-        for (const name of ['views', 'picture'])
+        for (const name of ['views', 'picture'].filter((one) => !kept.includes(one)))
             modules.there(name)?.close();
     }
 
     // Closes the panels if they leave no room for the card of a sensor or point that the user has pressed. On a phone, panels are sheets,
-    // which cover the card's sheet.
+    // which cover the card's sheet. The panel of views stays open while a note is written in it: the press chooses the note's place.
     function makeRoom() {
         if (phone.matches || !hasRoom(viewport))
-            closePanels();
+            closePanels(modules.there('notes')?.isWriting ? ['views'] : []);
     }
 
     // Opens the card of a clicked point, unless the camera has moved since the click: another point is under the pointer then.

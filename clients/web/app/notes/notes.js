@@ -71,6 +71,11 @@ export class Notes {
         return MAY.includes(this.session.role) && this.session.time.atUs === null;
     }
 
+    // Returns true while the form has text or edits a note.
+    get isWriting() {
+        return Boolean(this.edited || this.text.value);
+    }
+
     // Asks for the name under which the server stores this user's notes; only the author may change a note.
     async askName() {
         if (!MAY.includes(this.session.role))
