@@ -78,6 +78,7 @@ export class AlarmList {
     }
 
     setOpen(open) {
+        const opener = document.activeElement?.closest('[aria-controls="alarms"]'); // before other panels close and take the focus away
         for (const name of open ? ['engineer', 'import'] : [])
             this.modules.there(name)?.close(); // closes the engineering and import panels, which are shown in the same place
         this.shareRoom(open);
@@ -86,7 +87,7 @@ export class AlarmList {
         this.readJournal();
         this.show();
         if (open) {
-            this.opener = document.activeElement.closest('[aria-controls="alarms"]');
+            this.opener = opener;
             byId('alarms-close').focus();
         } else
             (this.opener?.isConnected ? this.opener : byId('alarm-strip')).focus();
