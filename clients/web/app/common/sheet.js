@@ -32,9 +32,10 @@ function stand() {
     if (!phone.matches) {
         ['legend', 'legend-right'].forEach((id) => byId(id).classList.remove('whole'));
         bell.remove();
-    } else if (isBelow.matches)
-        byId('groups').after(bell); // in the row above the tools
-    else
+    } else if (isBelow.matches) {
+        if (byId('groups').nextElementSibling !== bell) // an element that is moved loses the focus
+            byId('groups').after(bell); // in the row above the tools
+    } else if (byId('more-toggle').previousElementSibling !== bell)
         byId('more-toggle').before(bell); // in the column of tools
 }
 
