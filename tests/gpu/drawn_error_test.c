@@ -105,6 +105,7 @@ static void compare_evaluated(const struct drawn_error_case *site, const struct 
     pixel_field_at(&pixels, at_m, &value);
     tally->flags_off += value.no_data != (pick->state == PICK_NO_DATA);
     tally->worst_evaluated = fmax(tally->worst_evaluated, fabs((double)value.value - pick->value) / (view->range_max - view->range_min));
+    pixel_field_finish(&pixels);
 }
 
 /* Returns the largest error in metres of the pick's distances to sensors. */
