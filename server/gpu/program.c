@@ -8,7 +8,7 @@
 #include "base/text/embedded.h"
 #include "base/text/text.h"
 
-enum { MAX_INCLUDES = 16, LOG_BYTES = 4096 };
+enum { MAX_INCLUDES = 20, LOG_BYTES = 4096 };
 
 /* State of the expansion of `#include` lines in one source. Source numbers in compiler messages are indices into `names`. */
 struct expansion {

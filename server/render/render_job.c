@@ -6,6 +6,7 @@
 
 #include "base/mem.h"
 #include "gpu/mesh.h"
+#include "render/gl/sensor_cells.h"
 
 void render_job_init(struct render_job *job, const struct frame_context *context, struct frame *frame)
 {
@@ -37,6 +38,7 @@ static bool copy_field(const struct render_job *job, const struct fields_entry *
     *copy = *from;
     copy->shown = NULL;
     copy->sensors = 0;
+    copy->cells = on_gpu ? sensor_cells_ref(from->cells) : NULL;
     copy->pixels = (struct pixel_field){ 0 };
     pixel_field_copy(&copy->pixels, &from->pixels);
     copy->slice = on_gpu ? pool_ref(from->slice) : NULL;
@@ -72,6 +74,7 @@ void render_job_finish(struct render_job *job)
     for (size_t i = 0; job->copies && i < job->context.gpu_scene->scene->asset_count; i++) {
         pool_unref(&job->copies[i].slice);
         glDeleteBuffers(1, &job->copies[i].sensors);
+        sensor_cells_unref(&job->copies[i].cells);
         mem_free(job->copies[i].shown);
         pixel_field_finish(&job->copies[i].pixels);
     }

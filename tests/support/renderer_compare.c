@@ -73,6 +73,7 @@ bool renderer_measure(struct renderer *renderer, const struct view *view, const 
     bool good = render_backend_gl.init(renderer) && gl_backend_take_up(renderer, &context) &&
                 measure_target_begin(&measure, renderer->gl->log, view->width_px, view->height_px);
     if (good) {
+        surface_pass_prepare(&renderer->by_gl->surface_pass, &renderer->fields, &context);
         surface_pass_draw_some(&renderer->by_gl->surface_pass, &context, 0, INT_MAX);
         surface_pass_draw_blended(&renderer->by_gl->surface_pass, &context);
         measure_target_read(&measure, out);

@@ -11,7 +11,7 @@
 #include "tests/support/no_textures.h"
 #include "value/quality.h"
 
-enum { MAX_ASSETS = 512, MAX_TAGS = 1024 };
+enum { MAX_ASSETS = 512, MAX_TAGS = 4200 };
 
 struct toy *toy_create(void)
 {

@@ -127,6 +127,7 @@ static bool begin(struct renderer *renderer, struct render_job *job, const struc
     /* draws the whole frame as one tile if a GPU draws it: that takes no longer than one small tile on a processor */
     frame_tiles_init(&job->of.gl->tiles, &job->context, at_once || !renderer->gl->software);
     renderer_upload_fields(renderer, plan, &job->context, job->frame);
+    surface_pass_prepare(&renderer->by_gl->surface_pass, &renderer->fields, &job->context);
     return true;
 }
 

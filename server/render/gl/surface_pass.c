@@ -51,7 +51,7 @@ static GLuint make_program(struct log *log, enum surface_program_kind kind, int 
 bool surface_pass_init(struct surface_pass *pass, struct log *log)
 {
     bool good = occlusion_init(&pass->occlusion, log);
-    pass->log = pass->opaque.log = pass->blended.log = log;
+    pass->log = pass->opaque.log = pass->blended.log = pass->sensor_grids.log = log;
     for (int tier = 0; tier < 2; tier++)
         for (int variant = 0; variant < SURFACE_VARIANTS; variant++)
             if (is_used(tier, variant)) {
@@ -65,6 +65,7 @@ void surface_pass_finish(struct surface_pass *pass)
 {
     for (int i = 0; i < 4; i++)
         program_destroy(&pass->depth_programs[i / 2][i % 2]);
+    sensor_grids_finish(&pass->sensor_grids);
     occlusion_finish(&pass->occlusion);
     draw_batches_finish(&pass->opaque);
     draw_batches_finish(&pass->blended);
@@ -232,6 +233,26 @@ static void gather(struct surface_pass *pass, struct draw_batches *batches, cons
     }
 }
 
+/* --- lists of near sensors --------------------------------------------------------------------------------------------------- */
+
+void surface_pass_prepare(struct surface_pass *pass, struct fields *fields, const struct frame_context *context)
+{
+    for (size_t i = 0; i < context->visible_count; i++) {
+        int asset = context->visible[i];
+        struct fields_entry *entry = (struct fields_entry *)context->fields[asset];
+        if (!has_pixel_field(context, entry))
+            continue;
+        fields->bytes -= entry->cells ? entry->cells->bytes : 0;
+        const struct sensor_cells_params params = { .gl = context->gpu_scene->gl,
+                                                    .model = context->gpu_scene->of_asset[asset],
+                                                    .field = &entry->pixels,
+                                                    .sensors = entry->sensors,
+                                                    .step = entry->step };
+        sensor_cells_update(&pass->sensor_grids, &params, &entry->cells);
+        fields->bytes += entry->cells ? entry->cells->bytes : 0;
+    }
+}
+
 /* --- drawing ---------------------------------------------------------------------------------------------------------------- */
 
 static void set_material(const struct frame_context *context, const struct draw_batch_state *state)
@@ -284,7 +305,8 @@ static void draw_depth(const struct draw_batches *batches, const struct draw_bat
 }
 
 /* Draws the batches first..end-1. */
-static void draw_batch_range(const struct draw_batches *batches, const struct frame_context *context, size_t first, size_t end)
+static void draw_batch_range(struct surface_pass *pass, const struct draw_batches *batches, const struct frame_context *context,
+                             size_t first, size_t end)
 {
     const struct draw_batch_state *was = NULL;
     for (size_t i = first; i < end; i++) {
@@ -297,7 +319,7 @@ static void draw_batch_range(const struct draw_batches *batches, const struct fr
         if (is->depth_program)
             draw_depth(batches, batch);
         if (is->alone >= 0 && !context->reference)
-            reference_bind_pixel_sensors(context->fields[is->alone]->sensors);
+            sensor_cells_bind(&pass->sensor_grids, context->fields[is->alone]->sensors, context->fields[is->alone]->cells);
         if (is->alone < 0 || !context->reference)
             draw_batches_draw(batches, batch);
         else if (reference_bind(context->reference, is->alone, context->fields[is->alone]->sensors))
@@ -328,10 +350,10 @@ static void end_pass(const struct frame_context *context)
     gl_pass_leave(context->gpu_scene->gl, "pass");
 }
 
-static void draw_gathered(struct draw_batches *batches, const struct frame_context *context)
+static void draw_gathered(struct surface_pass *pass, struct draw_batches *batches, const struct frame_context *context)
 {
     if (batches->command_count > 0 && draw_batches_upload(batches, false))
-        draw_batch_range(batches, context, 0, batches->count);
+        draw_batch_range(pass, batches, context, 0, batches->count);
     draw_batches_begin(batches, context->gpu_scene->model_count);
 }
 
@@ -365,7 +387,7 @@ static void draw_seen(struct surface_pass *pass, const struct frame_context *con
         end = first + occlusion_round(occlusion, first);
         if (round > 0)
             occlusion_test(occlusion, batches, first, end);
-        draw_batch_range(batches, context, round ? ends[round - 1] : 0, ends[round]);
+        draw_batch_range(pass, batches, context, round ? ends[round - 1] : 0, ends[round]);
     }
     batches->command_count = 0;
 }
@@ -383,9 +405,9 @@ size_t surface_pass_draw_some(struct surface_pass *pass, const struct frame_cont
     while (first < context->visible_count && pass->triangles - before < triangles) {
         gather(pass, batches, context, context->visible[first++], false);
         if (pass->one_by_one)
-            draw_gathered(batches, context);
+            draw_gathered(pass, batches, context);
     }
-    draw_gathered(batches, context);
+    draw_gathered(pass, batches, context);
     end_pass(context);
     return first;
 }
@@ -400,8 +422,8 @@ void surface_pass_draw_blended(struct surface_pass *pass, const struct frame_con
     for (size_t i = context->visible_count; i-- > 0;) {
         gather(pass, &pass->blended, context, context->visible[i], false);
         if (pass->one_by_one)
-            draw_gathered(&pass->blended, context);
+            draw_gathered(pass, &pass->blended, context);
     }
-    draw_gathered(&pass->blended, context);
+    draw_gathered(pass, &pass->blended, context);
     end_pass(context);
 }

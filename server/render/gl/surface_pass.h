@@ -5,6 +5,7 @@
 #define RENDER_GL_SURFACE_PASS_H
 #include "render/gl/draw_batches.h"
 #include "render/gl/occlusion.h"
+#include "render/gl/sensor_cells.h"
 #include "render/frame_context.h"
 
 /* Features compiled into a shader program, combined by bitwise or. Each draw call uses the program with the fewest features
@@ -34,6 +35,7 @@ enum surface_program_kind {
 struct surface_pass {
     struct log *log;
     struct occlusion occlusion;
+    struct sensor_grids sensor_grids;
     /* minimum number of triangles in a frame for occlusion culling; INT_MAX: none, but clusters outside the frustum are still culled */
     int least_hiding;
     bool one_by_one; /* true: each asset is drawn with its own GL calls instead of in batches; for comparison in tests */
@@ -48,6 +50,9 @@ struct surface_pass {
    failure, logs the reason and returns false. */
 bool surface_pass_init(struct surface_pass *pass, struct log *log);
 void surface_pass_finish(struct surface_pass *pass);
+/* Makes the lists of near sensors of those fields of the visible assets whose lists are missing or out of date. Call after
+   fields_upload(), before drawing. */
+void surface_pass_prepare(struct surface_pass *pass, struct fields *fields, const struct frame_context *context);
 /* Draw the visible assets in steps. surface_pass_draw_some() draws opaque submeshes from the visible asset `first` on, until it
    has drawn about `triangles` triangles; it returns the index at which to continue. surface_pass_draw_blended() then draws all
    transparent submeshes. */

@@ -10,6 +10,7 @@
 
 #include "base/mem.h"
 #include "plant/influence.h"
+#include "render/gl/sensor_cells.h"
 #include "render/reference/reference.h"
 
 /* content hash of fields->lost, which replaces every field for which there is no memory; no other entry has this hash */
@@ -28,9 +29,10 @@ void fields_init(struct fields *fields, struct log *log, struct field *field)
 
 static void entry_destroy(struct fields *fields, struct fields_entry *entry)
 {
-    fields->bytes -= entry->count * sizeof(*entry->shown);
+    fields->bytes -= entry->count * sizeof(*entry->shown) + (entry->cells ? entry->cells->bytes : 0);
     pool_unref(&entry->slice);
     glDeleteBuffers(1, &entry->sensors);
+    sensor_cells_unref(&entry->cells);
     pixel_field_finish(&entry->pixels);
     mem_free(entry->directions);
     mem_free(entry->shown);
@@ -187,6 +189,16 @@ size_t fields_vertices(const struct fields *fields, int asset, const struct fiel
     return fields->reference ? count : field_vertices(fields->field, asset, params, count);
 }
 
+/* Deletes the GPU's copy of the entry's sensors, because they or their readings have changed. */
+static void forget_sensors(struct fields *fields, struct fields_entry *entry)
+{
+    size_t bytes = entry->cells ? entry->cells->bytes : 0;
+    glDeleteBuffers(1, &entry->sensors);
+    entry->sensors = 0;
+    sensor_cells_expire(&entry->cells);
+    fields->bytes -= entry->cells ? 0 : bytes;
+}
+
 /* Finds or creates the cache entry of one asset. Sets entry->behind if its values are out of date. NULL: the asset shows no field. */
 static struct fields_entry *look(struct fields *fields, const struct fields_ask *ask, int asset, size_t all)
 {
@@ -222,8 +234,7 @@ static struct fields_entry *look(struct fields *fields, const struct fields_ask 
         entry->pixels = pixels;
         pixels.sensors = NULL;
         if (entry->sensors)
-            glDeleteBuffers(1, &entry->sensors);
-        entry->sensors = 0;
+            forget_sensors(fields, entry);
     }
     pixel_field_finish(&pixels);
     take_directions(fields, entry, ask);

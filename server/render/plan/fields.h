@@ -31,6 +31,7 @@ struct fields_entry {
     struct pool_slice *slice;
     bool uploaded;  /* true: the values in `shown` are also in `slice`, a range of a GPU buffer */
     GLuint sensors; /* buffer of sensors for shaders that compute the field at each fragment (render/reference/reference.h); 0: none */
+    struct sensor_cells *cells; /* lists of the sensors near each place (render/gl/sensor_cells.h); NULL: none */
     int64_t oldest_age_ns;
     double drawn_error; /* bound of the error of interpolating `shown` within triangles (struct scalars, field/scalars.h) */
     uint64_t used;

@@ -2,6 +2,7 @@
 /* Fills the GPU buffers that shaders/reference.glsl reads: positions, readings and distances of an asset's sensors. */
 #include "render/reference/reference.h"
 
+#include <float.h>
 #include <string.h>
 
 #include "base/mem.h"
@@ -15,6 +16,7 @@ struct sensors_head { /* header of the GPU buffer of sensors, in the layout std4
     float power, radius_m, reach_m, empty;
     float range, vertices_or_usable, hot_spot_m, seen;
     int32_t paper, geodesic, fill, show;
+    float low, high, unused[2];
 };
 struct sensor_block {
     float place_m[3], strength;
@@ -62,6 +64,8 @@ static struct sensors_head head_of(const struct reference *reference, int asset,
         .geodesic = params->distance != DISTANCE_EUCLIDEAN,
         .fill = params->fill == FILL_NEIGHBOURS,
         .show = (int32_t)params->show,
+        .low = -FLT_MAX,
+        .high = FLT_MAX,
     };
 }
 
@@ -106,7 +110,9 @@ GLuint reference_pixel_sensors(struct log *log, const struct pixel_field *field)
                                    .seen = field->seen,
                                    .paper = field->paper,
                                    .fill = field->fill,
-                                   .show = shows[field->show] };
+                                   .show = shows[field->show],
+                                   .low = field->low,
+                                   .high = field->high };
     int usable = 0, lost = field->count; /* usable sensors are stored from the first block on, others from the last one on */
     for (int i = 0; i < field->count; i++) {
         const struct pixel_sensor *from = &field->sensors[i];
@@ -118,11 +124,6 @@ GLuint reference_pixel_sensors(struct log *log, const struct pixel_field *field)
     GLuint buffer = mesh_buffer(log, "sensors for the per-fragment field", bytes, head, 0);
     mem_free(head);
     return buffer;
-}
-
-void reference_bind_pixel_sensors(GLuint sensors)
-{
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, BIND_SENSORS, sensors);
 }
 
 /* --- distances ------------------------------------------------------------------------------------------------------------- */

@@ -27,8 +27,6 @@ GLuint reference_sensors(const struct reference *reference, int asset, const str
 /* Creates the GPU buffer that shaders with PIXEL_FIELD read to evaluate this field at each pixel. The caller owns the buffer.
    Logs and returns 0 when out of memory. */
 GLuint reference_pixel_sensors(struct log *log, const struct pixel_field *field);
-/* Binds a buffer from reference_pixel_sensors() for the next draws; their program must be compiled with PIXEL_FIELD. */
-void reference_bind_pixel_sensors(GLuint sensors);
 /* Binds the asset's distances and a buffer from reference_sensors() for the next draws of that asset. Logs and returns false
    when out of GPU memory. */
 bool reference_bind(struct reference *reference, int asset, GLuint sensors);
