@@ -152,7 +152,7 @@ static void evaluate_corners(struct sampler *sampler)
 static void enqueue(struct sampler *sampler, const struct triangle_piece *piece)
 {
     if (sampler->pieces[piece->tri]++ >= MAX_PIECES) {
-        if (sampler->near && sampler->near->group) /* hot spots that no sample sees */
+        if (sampler->near && sampler->near->group) /* the rest of the triangle may contain a hot spot's surroundings that no sample sees */
             *sampler->errors[piece->tri] = 1;
         return;
     }
@@ -506,12 +506,21 @@ static void spread(struct weights *weights, float *errors, const float *at_verti
     raise_vertices(file, level, errors, least, weights->errors);
 }
 
+/* Measures the errors of interpolation in the triangles of one level of detail. */
+static void measure_triangles(struct drawn_error_job *job, const struct asset_level *level, struct workers *workers)
+{
+    const struct asset_view *file = &job->weights->layout->file->view;
+    for (uint32_t p = level->first_primitive; p < level->first_primitive + level->primitive_count; p++) {
+        job->first = file->primitives[p].first_index / 3;
+        workers_for(workers, file->primitives[p].index_count / 3, GRAIN, measure_some, job);
+    }
+}
+
 /* Measures the errors of all triangles of one level of detail. resolved true: preparation left no interpolation error, so only
    the effect of errors in distances is measured. */
 static void measure_level(struct drawn_error_job *job, const struct asset_level *level, bool resolved, struct workers *workers)
 {
     struct weights *weights = job->weights;
-    const struct asset_view *file = &weights->layout->file->view;
     size_t members = weights->member_count;
     uint32_t *numbers = mem_array(members, sizeof(*numbers));
     uint8_t *unmarked = mem_array(members, 1);
@@ -529,10 +538,8 @@ static void measure_level(struct drawn_error_job *job, const struct asset_level 
     workers_for(workers, blocks, 4, prepare_some, weights);
     if (job->vertex_errors)
         workers_for(workers, blocks, 4, amplify_some, job);
-    for (uint32_t p = level->first_primitive; !resolved && p < level->first_primitive + level->primitive_count; p++) {
-        job->first = file->primitives[p].first_index / 3;
-        workers_for(workers, file->primitives[p].index_count / 3, GRAIN, measure_some, job);
-    }
+    if (!resolved)
+        measure_triangles(job, level, workers);
     spread(weights, job->errors, job->vertex_errors, level);
     mem_free(job->vertex_errors);
     mem_free(numbers);
@@ -622,12 +629,8 @@ void drawn_error_mark(struct weights *weights, const struct field_params *params
     }
     workers_for(workers, blocks, 4, prepare_some, weights);
     for (uint32_t l = 0; l < file->header->level_count; l++) {
-        const struct asset_level *level = &file->levels[l];
-        job.error_m = level->error_m;
-        for (uint32_t p = level->first_primitive; p < level->first_primitive + level->primitive_count; p++) {
-            job.first = file->primitives[p].first_index / 3;
-            workers_for(workers, file->primitives[p].index_count / 3, GRAIN, measure_some, &job);
-        }
+        job.error_m = file->levels[l].error_m;
+        measure_triangles(&job, &file->levels[l], workers);
     }
     for (uint32_t i = 0; i < file->header->index_count; i++)
         if (job.errors[i / 3] > accepted_near(near))

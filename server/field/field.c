@@ -173,10 +173,11 @@ static void mark_distances(struct field *field, struct field_state *state, size_
     struct weights *weights = weights_create(state->layout, &params, 1, state->usable, &(struct weights_key){ 0 });
     for (size_t v = 0; v < state->scalars.count; v++)
         near.largest_m = fmaxf(near.largest_m, state->at[v].value);
-    if (weights && weights->member_count == 1 && marks && near.largest_m > 0)
+    const bool is_known = weights && weights->member_count == 1 && marks;
+    if (is_known && near.largest_m > 0)
         drawn_error_mark(weights, &params, state->usable, &near, marks, field->workers);
     for (size_t v = 0; v < state->scalars.count; v++)
-        state->at[v].uncertain = !weights || !marks || marks[v] ? 255 : 0;
+        state->at[v].uncertain = !is_known || marks[v] ? 255 : 0;
     weights_destroy(&weights);
     mem_free(marks);
 }
@@ -186,7 +187,7 @@ static void mark_distances(struct field *field, struct field_state *state, size_
 static void mark_blind(struct field *field, struct field_state *state)
 {
     struct weights *weights = state->weights;
-    if (weights->blind_marks || weights->distance == DISTANCE_EUCLIDEAN || state->layout->assumed || weights->member_count == 0)
+    if (weights->blind_marks || !weights_interpolates_blind(weights))
         return;
     weights->blind_marks = mem_try_array(state->layout->vertex_count, 1);
     if (weights->blind_marks)

@@ -390,11 +390,14 @@ uint8_t weights_lacking_at(const struct weights *weights, size_t vertex, bool fi
     return filled || weights->lost[vertex] < reach ? reach : weights->lost[vertex];
 }
 
+bool weights_interpolates_blind(const struct weights *weights)
+{
+    return weights->distance != DISTANCE_EUCLIDEAN && !weights->layout->assumed && weights->member_count > 0;
+}
+
 bool weights_blind_off(const struct weights *weights, size_t vertex)
 {
-    if (weights->distance == DISTANCE_EUCLIDEAN || weights->layout->assumed || weights->member_count == 0)
-        return false;
-    return !weights->blind_marks || weights->blind_marks[vertex];
+    return weights_interpolates_blind(weights) && (!weights->blind_marks || weights->blind_marks[vertex]);
 }
 
 /* Returns whether a vertex has data. near_m, lost_m, no_limits_m: distances from the nearest usable sensor, from the nearest

@@ -145,6 +145,8 @@ void weights_drop_columns(struct weights *weights);
 /* Returns how far a vertex is beyond the border of the data, encoded as struct scalar's `lacking`. filled: areas around lost
    sensors (those without a usable reading) count as having data. Call weights_prepare() for the vertex's block first. */
 uint8_t weights_lacking_at(const struct weights *weights, size_t vertex, bool filled);
+/* Returns true if pictures interpolate SHOW_BLIND between vertices, so that weights->blind_marks must be measured. */
+bool weights_interpolates_blind(const struct weights *weights);
 /* Returns true if SHOW_BLIND may be drawn with too large an error at a vertex: it was measured there, or could not be measured. */
 bool weights_blind_off(const struct weights *weights, size_t vertex);
 /* Computes those of the arrays near_m, top and place that a block of vertices lacks (begin: a multiple of KERNEL_BLOCK; count
