@@ -33,7 +33,7 @@ async function sleeps(seconds) {
 
 test('an event loop with nothing to do sleeps', options, async () => {
     // a loop that polled every 100 ms would wake ten times in each second
-    await until('a second in which the loop wakes at most four times', async () => await sleeps(1) < 5);
+    await until('three seconds in which the loop wakes less than five times a second', async () => await sleeps(3) < 5);
 });
 
 // All tags are read every 100 ms, so the frame's oldest reading is about as old as the change that caused the frame. Its age is

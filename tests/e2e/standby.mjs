@@ -356,7 +356,9 @@ test('during maintenance of the standby and without the database, the leader pol
     const { refused, accept } = refuseChanges();
     standby('normal');
     await core.program.line(/lease: PostgreSQL does not answer \(.*no changes now/);
+    const began = performance.now();
     await refused(LEASE_RENEWALS);
+    await until('more time than a lease', () => performance.now() - began > 3000);
     assert.ok(await two.ready(core), 'the core continues to lead');
     accept();
     await alone(0);

@@ -557,7 +557,7 @@ static int count_marked(const struct stand *stand, const struct view *view)
     return marked;
 }
 
-/* Also if shaders sum over all sensors at each pixel, the distances along a surface are interpolated over a triangle. Therefore
+/* Even if shaders sum over all sensors at each pixel, the distances along a surface are interpolated over a triangle. Therefore
    long triangles stay marked. */
 TEST(test_a_field_per_fragment_marks_long_triangles)
 {

@@ -303,15 +303,21 @@ static void expect_share_without_data(struct stand *stand, const struct view *vi
     assert_true(shown > PIXELS / 10 && no_data >= low * shown && no_data <= high * shown);
 }
 
+/* Sets up plates with this number of sensors, gives each a reading, and chooses a camera. */
+static void show_plates(struct stand *stand, struct view *view, int sensors)
+{
+    random_state = sweep_seed();
+    stand_on_plates(stand, sensors);
+    fill(stand, sensors, false);
+    look(&stand->toy->scene, view);
+}
+
 /* Overwrites the lists by empty ones without sensors: a fragment that uses its list then shows no data. */
 TEST(test_fragments_use_lists)
 {
     struct stand stand;
     struct view view;
-    random_state = sweep_seed();
-    stand_on_plates(&stand, 64);
-    fill(&stand, 64, false);
-    look(&stand.toy->scene, &view);
+    show_plates(&stand, &view, 64);
     expect_share_without_data(&stand, &view, 0, 0);
     glClearNamedBufferData(cells_of(&stand, &view.field)->lists, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, NULL);
     expect_share_without_data(&stand, &view, 0.999, 1);
@@ -326,10 +332,7 @@ TEST(test_few_sensors_have_no_lists)
     struct stand stand;
     struct view view;
     struct cells_tally tally = { 0 };
-    random_state = sweep_seed();
-    stand_on_plates(&stand, SENSOR_CELLS_FEW);
-    fill(&stand, SENSOR_CELLS_FEW, false);
-    look(&stand.toy->scene, &view);
+    show_plates(&stand, &view, SENSOR_CELLS_FEW);
     compare(&stand, &view, 300, &tally);
     assert_null(cells_of(&stand, &view.field));
     assert_true(tally.pixels > 50 && tally.worst <= MOST_STEPS && tally.flags_off == 0);
@@ -343,12 +346,9 @@ TEST(test_moved_sensor)
     struct stand stand;
     struct view view;
     struct cells_tally tally = { 0 };
-    random_state = sweep_seed();
-    stand_on_plates(&stand, 64);
+    show_plates(&stand, &view, 64);
     struct trials *trials = trials_create();
     field_set_trials(stand.field, trials);
-    fill(&stand, 64, false);
-    look(&stand.toy->scene, &view);
     compare(&stand, &view, 300, &tally);
     struct trial_sensor moved = { .tag = 5, .surface_m = { 1, 3, 0 }, .place_m = { 1, 3, 0 } };
     view.field.trial = trials_put(trials, &moved, 1);
@@ -374,11 +374,8 @@ TEST(test_frame_in_progress_keeps_its_lists)
 {
     struct stand stand;
     struct view view;
-    random_state = sweep_seed();
-    stand_on_plates(&stand, 64);
+    show_plates(&stand, &view, 64);
     renderer_use_gl(stand.renderer, true);
-    fill(&stand, 64, false);
-    look(&stand.toy->scene, &view);
     view.tier = TIER_REFINED;
     struct frame *before = end_job(stand.renderer, planned_begin(stand.renderer, &view, stand.snapshot));
     struct render_job *job = planned_begin(stand.renderer, &view, stand.snapshot);
@@ -401,10 +398,7 @@ TEST(test_lost_context)
     struct view view;
     struct cells_tally tally = { 0 };
     enum gl_kind kind = rig.gl->kind;
-    random_state = sweep_seed();
-    stand_on_plates(&stand, 64);
-    fill(&stand, 64, false);
-    look(&stand.toy->scene, &view);
+    show_plates(&stand, &view, 64);
     compare(&stand, &view, 300, &tally);
     gl_lose(rig.gl);
     renderer_destroy(&stand.renderer);

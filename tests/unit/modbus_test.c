@@ -3,6 +3,7 @@
    misbehaves. */
 #include "tests/support/test.h"
 #include <arpa/inet.h>
+#include <limits.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -62,11 +63,16 @@ CASE(many_tags_take_few_requests)
     assert_int_equal(s->device.requests, 3);
 }
 
-/* Waits until the device has received `count` more requests. */
+enum { LONGEST_S = 60 };
+
+/* Waits until the device has received `count` more requests; fails after LONGEST_S. */
 static void await_requests(const struct modbus_case *s, int count)
 {
-    for (int end = s->device.requests + count; s->device.requests < end;)
+    const int64_t end_ns = clock_mono_ns() + LONGEST_S * NS_PER_S;
+    const int end = s->device.requests + count;
+    while (s->device.requests < end && clock_mono_ns() < end_ns)
         sleep_ns(5 * NS_PER_MS);
+    assert_in_range(s->device.requests, end, INT_MAX);
 }
 
 CASE(is_asked_at_its_scan_time)
@@ -132,8 +138,9 @@ CASE(resets_do_no_harm)
     int64_t began_ns = clock_mono_ns();
     modbus_case_serve(s);
     modbus_case_expect(s, 1, QUALITY_BAD_NO_COMMUNICATION, 3);
-    while (s->device.connections < 3)
+    while (s->device.connections < 3 && clock_mono_ns() - began_ns < LONGEST_S * NS_PER_S)
         sleep_ns(5 * NS_PER_MS);
+    assert_in_range(s->device.connections, 3, INT_MAX);
     assert_true(clock_mono_ns() - began_ns >= NS_PER_S); /* reconnecting backs off: at least 0.5 s before each connection */
     s->device.manner = DEVICE_GOOD;
     modbus_case_expect(s, 1, QUALITY_GOOD, 8);

@@ -150,7 +150,7 @@ static void plate_init(struct plate *plate, const double u_m[3], const double v_
     toy_add(plate->toy, "PLATE", &shape, plate->origin_m, corner, count);
 }
 
-/* Puts a sensor to the position a u + b v. along: with distances along the surface, which are straight lines on a plate; otherwise
+/* Places a sensor at the position a u + b v. along: with distances along the surface, which are straight lines on a plate; otherwise
    these are not known yet. */
 static void plate_put(struct plate *plate, int sensor, double a, double b, bool good, bool along)
 {

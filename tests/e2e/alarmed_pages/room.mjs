@@ -261,7 +261,7 @@ test('in the low picture above a trend and the time bar, legend and banner are c
         });
 });
 
-// Windows with little room next to a panel, and tablets.
+// Sizes of windows with little room next to a panel, and of tablets.
 const LITTLE = sweep([[1024, 600], [1024, 768], [1100, 700], [1199, 640], [1280, 640], [768, 1024], [820, 1180], [740, 560]],
     [[1024, 600], [768, 1024], [1280, 640]]);
 // Returns whether the card is visible, and the faults of its position: what it overlaps, and whether it leaves the picture.
