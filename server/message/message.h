@@ -215,12 +215,27 @@ struct hello_request {
     struct wall_place tile;
 };
 
+struct size_request {
+    int width_px, height_px; /* size of the view in pixels; 0: as in the resumed session */
+    double pixel_ratio;      /* device pixels per CSS pixel of the page; 0: not stated */
+};
+
+struct ping_request {
+    double t;    /* the client's time stamp, which the server returns in its answer */
+    bool active; /* true: the user was active since the last ping */
+};
+
+struct tag_list_request {
+    char confirm[17];             /* hash of the tag list that the user saw and confirmed; empty: not confirmed yet */
+    struct assumed_filter accept; /* message accept_places: filter that selects the assumed positions to accept */
+    char kept[65];                /* message restore_tags: name of the earlier tag list version to restore */
+};
+
 struct message {
     enum message_type type;
     struct hello_request hello;
-    int width_px, height_px;         /* messages hello and resize: size of the view in pixels; 0: as in the resumed session */
+    struct size_request size;        /* messages hello and resize */
     struct codec_list codecs;        /* messages hello and codecs: codecs that the client can decode; empty: as in the resumed session */
-    double pixel_ratio;              /* messages hello and resize: device pixels per CSS pixel of the page; 0: not stated */
     char named[NAMED_VIEW_ID_BYTES]; /* messages hello, look and params: id of a named view; empty: no view (only in hello and params) */
     struct camera camera;            /* messages camera and hello: the new camera */
     /* the client's sequence number of its message camera, ack, fit, pick or look; message hello: that of its camera */
@@ -231,17 +246,13 @@ struct message {
     struct pick_request pick;
     bool visible;
     double decode_ms; /* message ack: milliseconds that the client needed to decode the frame; negative: not stated */
-    double t;         /* message ping: the client's time stamp, which the server returns in its answer */
-    bool active;      /* message ping: true: the user was active since the last ping */
+    struct ping_request ping;
     uint64_t follow;  /* messages follow and lead: number of the other session to follow, or to which the lead is handed; 0: no session */
     struct alarm_request alarm;
     struct time_request time; /* messages time and hello: the past or present time that the view is to show */
     struct place_request place;
     struct coverage_request coverage;
-    /* messages save_tags, accept_places and restore_tags: hash of the tag list that the user saw and confirmed; empty: not confirmed yet */
-    char confirm[17];
-    struct assumed_filter accept; /* message accept_places: filter that selects the assumed positions to accept */
-    char kept[65];                /* message restore_tags: name of the earlier tag list version to restore */
+    struct tag_list_request tag_list; /* messages save_tags, accept_places and restore_tags */
     struct loop_check_request loop_check;
     /* messages that edit or share a named view: save_view sets all members, remove_view only the id, share_view only the
        address, send_to_wall only view and title */

@@ -23,9 +23,9 @@ static bool size_parse(const json_t *o, struct message *out, struct message_erro
         message_fail(error, "bad_field", "width, height: expected whole numbers, and at most %d pixels in the picture", VIEW_MAX_PIXELS);
         return false;
     }
-    out->width_px = (int)w;
-    out->height_px = (int)h;
-    return may_number(o, "pixel_ratio", 0.25, 8, &out->pixel_ratio, NULL, error);
+    out->size.width_px = (int)w;
+    out->size.height_px = (int)h;
+    return may_number(o, "pixel_ratio", 0.25, 8, &out->size.pixel_ratio, NULL, error);
 }
 
 static bool parse_camera(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
@@ -137,7 +137,7 @@ static bool parse_hello(const struct plant *plant, const json_t *o, struct messa
         return false;
     if (!tile_parse(plant, o, out, error) || !take_signed(o, "signed", out, &given, error))
         return false;
-    if (out->hello.tile.display && !out->width_px) {
+    if (out->hello.tile.display && !out->size.width_px) {
         message_fail(error, "bad_field", "tile: requires the fields width and height");
         return false;
     }
@@ -182,9 +182,9 @@ static bool parse_ping(const struct plant *plant, const json_t *o, struct messag
 {
     const json_t *active = json_object_get(o, "active");
     (void)plant;
-    out->active = json_is_true(active);
+    out->ping.active = json_is_true(active);
     if (!active || json_is_boolean(active))
-        return need_number(o, "t", -1e300, 1e300, &out->t, error);
+        return need_number(o, "t", -1e300, 1e300, &out->ping.t, error);
     message_fail(error, "bad_field", "active: expected true or false");
     return false;
 }

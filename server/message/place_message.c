@@ -71,7 +71,7 @@ bool coverage_parse(const struct plant *plant, const json_t *o, struct message *
 bool save_tags_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
 {
     (void)plant;
-    return need_seq(o, &out->seq, error) && may_text(o, "confirm", out->confirm, sizeof(out->confirm), NULL, error);
+    return need_seq(o, &out->seq, error) && may_text(o, "confirm", out->tag_list.confirm, sizeof(out->tag_list.confirm), NULL, error);
 }
 
 /* Returns true if a glob pattern has few enough stars to be matched fast: each star multiplies the time that a long name may take. */
@@ -85,7 +85,7 @@ static bool is_simple(const char *pattern)
 
 bool accept_places_parse(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
 {
-    struct assumed_filter *filter = &out->accept;
+    struct assumed_filter *filter = &out->tag_list.accept;
     const char *asset = json_string_value(json_object_get(o, "asset")), *group = json_string_value(json_object_get(o, "group"));
     char name[48];
     *filter = (struct assumed_filter){ .asset = asset ? plant_find_asset(plant, asset) : -1,
@@ -111,10 +111,10 @@ bool restore_tags_parse(const struct plant *plant, const json_t *o, struct messa
     char real[PATH_MAX];
     const char *base = text_base_name(list_path(plant, real));
     size_t n = strlen(base);
-    if (!need_words(o, "kept", true, out->kept, sizeof(out->kept), error) || !save_tags_parse(plant, o, out, error))
+    if (!need_words(o, "kept", true, out->tag_list.kept, sizeof(out->tag_list.kept), error) || !save_tags_parse(plant, o, out, error))
         return false;
-    const char *number = out->kept + n + 1;
-    if (!strncmp(out->kept, base, n) && out->kept[n] == '.' && *number && strspn(number, "0123456789") == strlen(number))
+    const char *number = out->tag_list.kept + n + 1;
+    if (!strncmp(out->tag_list.kept, base, n) && out->tag_list.kept[n] == '.' && *number && strspn(number, "0123456789") == strlen(number))
         return true;
     message_fail(error, "bad_field", "kept: expected a version of the tag list, such as %s.1", base);
     return false;
@@ -249,7 +249,7 @@ static struct tag_save *order_of(const struct plant *plant, const char *before, 
 {
     char hash[17], real[PATH_MAX];
     tag_file_hash(after, hash);
-    if (!message->confirm[0] || strcmp(message->confirm, hash) != 0) {
+    if (!message->tag_list.confirm[0] || strcmp(message->tag_list.confirm, hash) != 0) {
         mem_free(after);
         return NULL;
     }
@@ -270,14 +270,14 @@ static char *wanted_list(const struct scene *scene, const char *before, const st
     if (message->type == MESSAGE_RESTORE_TAGS) {
         char real[PATH_MAX];
         const char *list = list_path(plant, real);
-        char *path = mem_printf("%.*s%s", (int)(text_base_name(list) - list), list, message->kept);
+        char *path = mem_printf("%.*s%s", (int)(text_base_name(list) - list), list, message->tag_list.kept);
         char *text = tag_file_read(path, why);
         mem_free(path);
         return text;
     }
     if (message->type != MESSAGE_ACCEPT_PLACES)
         return edited(plant, before, set, why);
-    assumed_places_choose(scene, &message->accept, outcome);
+    assumed_places_choose(scene, &message->tag_list.accept, outcome);
     return assumed_places_accept(plant, before, outcome, why);
 }
 

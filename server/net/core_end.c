@@ -27,9 +27,9 @@ static bool hand_on(void *arg, const struct session *session, const char *text)
 
 void core_end_bind(struct server_context *server)
 {
-    server->session_context.hand_on = server->params.plant.core_link ? hand_on : NULL;
-    server->session_context.hand_on_arg = server;
-    server->session_context.token_keys = server->params.plant.core_link ? &server->core.token_keys : NULL;
+    server->session_context.core.hand_on = server->params.plant.core_link ? hand_on : NULL;
+    server->session_context.core.hand_on_arg = server;
+    server->session_context.sign_in.token_keys = server->params.plant.core_link ? &server->core.token_keys : NULL;
 }
 
 static void take_key(struct server_context *server, const json_t *core)

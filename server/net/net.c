@@ -115,7 +115,7 @@ static void look_around(struct net *net, int64_t now_ns)
         fclose(file);
     net->cpu_ns = now_ns;
     wall_displays_count(&net->server, now_ns);
-    net->server.session_context.cpu_used = 1 - cpu_meter_free(&net->cpu, stat);
+    net->server.session_context.load.cpu_used = 1 - cpu_meter_free(&net->cpu, stat);
 }
 
 /* Returns this core's role in a pair of cores, as status text for the service manager (static); NULL: there is no pair. */
@@ -125,13 +125,13 @@ static const char *core_standing(const struct server_context *server)
     if (!keeper)
         return NULL;
     if (!core_end_leads(server))
-        return server->session_context.core_up ? "standby: follows the core that leads" : "standby: not connected to a core that leads";
+        return server->session_context.core.up ? "standby: follows the core that leads" : "standby: not connected to a core that leads";
     return lease_keeper_is_alone(keeper) ? "leads alone (maintenance): no other core takes over" : renderers_standby_texts(server)->status;
 }
 
 static bool has_core(const struct server_context *server)
 {
-    return !server->params.plant.core_link || server->session_context.core_up;
+    return !server->params.plant.core_link || server->session_context.core.up;
 }
 
 static void say_status(const struct server_context *server)
@@ -172,7 +172,7 @@ static void tick(struct net *net, int64_t now_ns)
     counter_set(net->server.counters.connections, net->server.room.connections);
     counter_set(net->server.counters.logins_slowed, login_throttle_slowed(net->server.logins.throttle, now_ns));
     if (net->server.history_loader)
-        net->server.session_context.history_first_us = history_loader_first_us(net->server.history_loader);
+        net->server.session_context.readings.history_first_us = history_loader_first_us(net->server.history_loader);
     if (net_check_links(&net->server))
         streams_on_readings(&net->server, false, true);
     if (core_loss_on_tick(&net->server.life.core_loss, has_core(&net->server), now_ns))
@@ -291,7 +291,7 @@ static void collect_historical_snapshots(struct server_context *server)
 {
     struct history_loader_answer *answer = server->history_loader ? history_loader_collect(server->history_loader) : NULL;
     if (answer)
-        server->session_context.history_first_us = history_loader_first_us(server->history_loader);
+        server->session_context.readings.history_first_us = history_loader_first_us(server->history_loader);
     for (struct history_loader_answer *next; answer; answer = next) {
         next = answer->next;
         if (stream_owns(server, answer->client))
@@ -484,12 +484,12 @@ static bool open_access(struct net *net)
     server->http.content_policy = access_content_policy(access);
     server->local_only = access_name_is_local(server->params.address) && !access->behind_proxy;
     if (access->tokens_path)
-        server->session_context.tokens = server->logins.tokens = tokens_create(server->params.log, access->tokens_path);
+        server->session_context.sign_in.tokens = server->logins.tokens = tokens_create(server->params.log, access->tokens_path);
     if (access->tokens_path && !server->logins.tokens)
         return false;
     if (access->notice_path && !(server->logins.notice = access_notice_read(server->params.log, access->notice_path)))
         return false;
-    server->session_context.lock_ns = (int64_t)(access->lock_min * 60e9);
+    server->session_context.sign_in.lock_ns = (int64_t)(access->lock_min * 60e9);
     if (server->logins.tokens) {
         tokens_set_plant(server->logins.tokens, server->params.plant.scene->plant->name);
         tokens_set_pairings(server->logins.tokens, pairings_find, server->params.plant.pairings);
@@ -501,7 +501,7 @@ static bool open_access(struct net *net)
                                           .lock_ns = (int64_t)(access->lock_min * 60e9),
                                           .wake = wake_loop,
                                           .wake_arg = net };
-    if (access->openid_path && !(server->session_context.openid = server->logins.openid = openid_start(&openid)))
+    if (access->openid_path && !(server->session_context.sign_in.openid = server->logins.openid = openid_start(&openid)))
         return false;
     return !access->tls_cert_path || (server->tls = tls_create(server->params.log, access->tls_cert_path, access->tls_key_path));
 }
@@ -533,9 +533,9 @@ struct net *net_create(const struct net_params *params)
     server->room.addresses = address_limits_create(server->room.quotas, !params->access.behind_proxy && params->access.proxy_count == 0);
     server->logins.throttle = login_throttle_create();
     server->session_context = (struct session_context){
-        .alarm_texts = &server->texts.alarms,
-        .tag_texts = &server->texts.tags,
-        .lists_said = server->texts.lists,
+        .caches.alarm_texts = &server->texts.alarms,
+        .caches.tag_texts = &server->texts.tags,
+        .caches.lists_said = server->texts.lists,
         .codecs = params->codecs,
         .imports = params->import != NULL,
         .version = params->version,
@@ -543,10 +543,10 @@ struct net *net_create(const struct net_params *params)
         .quotas = server->room.quotas,
         .resumes = resumes_create(),
         .admission = &server->room.admission,
-        .login_throttle = server->logins.throttle,
-        .audit = params->audit,
-        .file_writer = params->file_writer,
-        .kept_answers = &server->kept_answers,
+        .sign_in.login_throttle = server->logins.throttle,
+        .records.audit = params->audit,
+        .records.file_writer = params->file_writer,
+        .records.kept_answers = &server->kept_answers,
     };
     if (params->signing_key) {
         signing_key_id(params->signing_key, server->signing.key_id);

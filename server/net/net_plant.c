@@ -63,8 +63,8 @@ void net_bind_plant(struct net *net)
     }
     server->session_context.plant = plant;
     server->session_context.services = &server->params.plant;
-    server->session_context.snapshot = server->readings.snapshot;
-    server->session_context.links_up = server->readings.links_up;
+    server->session_context.readings.snapshot = server->readings.snapshot;
+    server->session_context.readings.links_up = server->readings.links_up;
     core_end_bind(server);
     net_take_snapshot(server);
     net_check_links(server);

@@ -28,7 +28,7 @@ size_t net_views(struct net *net, const struct plant_services *next, struct view
     store_snapshot(next->store, clock_mono_ns(), clock_plant_ns(next->clock), snapshot);
     session_context.plant = next->scene->plant;
     session_context.services = next;
-    session_context.snapshot = snapshot;
+    session_context.readings.snapshot = snapshot;
     for (const struct stream *stream = net->server.streams.first; stream && count < most; stream = stream->next)
         if (stream->session->hello && !stream->session->hidden) {
             session_view_in(stream->session, &session_context, &out[count]);
@@ -126,7 +126,7 @@ void net_report_reload(struct net *net, uint64_t number, bool good, const char *
 
 void net_report_save(struct net *net, uint64_t client, const char *text)
 {
-    net->server.session_context.saving = false;
+    net->server.session_context.records.saving = false;
     stream_say(&net->server, client, text);
     render_service_wake(net->server.params.plant.render_service);
 }

@@ -65,7 +65,7 @@ int64_t net_update_readings(struct net *net, int64_t now_ns)
 {
     struct server_context *server = &net->server;
     if (atomic_exchange(&net->readings_changed, false))
-        net->readings_ns = later(now_ns + GATHER_NS, server->session_context.changed_ns + READINGS_INTERVAL_NS);
+        net->readings_ns = later(now_ns + GATHER_NS, server->session_context.readings.changed_ns + READINGS_INTERVAL_NS);
     if (server->streams.count == 0 && !server->core.renderers)
         return INT64_MAX;
     /* announces the changes in a snapshot that a request took since the last call */

@@ -42,10 +42,10 @@ bool net_check_links(struct server_context *server)
     }
     struct core_link *core_link = server->params.plant.core_link;
     bool core_up = core_link && core_link_is_up(core_link);
-    changed |= server->session_context.core_up != core_up;
-    server->session_context.core_up = core_up;
-    server->session_context.live = any;
-    struct clock_state clock = clock_state_read(), *known = &server->session_context.clock;
+    changed |= server->session_context.core.up != core_up;
+    server->session_context.core.up = core_up;
+    server->session_context.readings.live = any;
+    struct clock_state clock = clock_state_read(), *known = &server->session_context.readings.clock;
     changed |= known->set != clock.set || known->leap_s != clock.leap_s || clock_state_error_ms(known) != clock_state_error_ms(&clock);
     *known = clock;
     counter_set(server->counters.clock_set, clock.set);
@@ -60,7 +60,7 @@ void net_note_changes(struct server_context *server)
     server->readings.data_changed |= data_changed;
     server->readings.links_changed |= net_check_links(server);
     if (data_changed)
-        server->session_context.changed_ns = server->readings.snapshot->taken_mono_ns;
+        server->session_context.readings.changed_ns = server->readings.snapshot->taken_mono_ns;
 }
 
 void net_refresh_readings(struct server_context *server)

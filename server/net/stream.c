@@ -278,7 +278,7 @@ void streams_on_tick(struct server_context *server)
 {
     int64_t now_ns = clock_mono_ns(), patience_ns = server->room.quotas->at[QUOTA_PATIENCE_S] * NS_PER_S;
     server->streams.restless = false;
-    server->session_context.overloaded = is_loaded(server);
+    server->session_context.load.overloaded = is_loaded(server);
     count_moving(server, now_ns);
     follow_share_steps(server);
     follow_tell(server, now_ns);
@@ -440,7 +440,7 @@ static void save_resolve(struct server_context *server, struct session *session)
     if (!save)
         return;
     save->client = session->id;
-    server->session_context.saving = true;
+    server->session_context.records.saving = true;
     server->params.save(server->params.reload_arg, save);
 }
 
@@ -466,7 +466,7 @@ static void on_message(struct server_context *server, struct stream *stream)
     if (pacer)
         latency_stages_shown(&server->latency, pacer);
     if (session->demand.input_ns == now_ns) {
-        server->session_context.moving_until_ns = now_ns + MOVING_NS;
+        server->session_context.load.moving_until_ns = now_ns + MOVING_NS;
         if (follow_spread(server, stream))
             pump_followers(server, stream);
     }

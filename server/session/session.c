@@ -32,19 +32,19 @@ static enum role role_now(const struct session *session, int64_t now_utc_ns)
     const struct session_context *context = session->context;
     const struct token_holder *holder = &session->identity.holder;
     if (holder->signed_in)
-        return context->openid ? openid_role(context->openid, holder) : ROLE_NOBODY;
-    enum role role = context->tokens ? tokens_role(context->tokens, holder, now_utc_ns) : ROLE_NOBODY;
+        return context->sign_in.openid ? openid_role(context->sign_in.openid, holder) : ROLE_NOBODY;
+    enum role role = context->sign_in.tokens ? tokens_role(context->sign_in.tokens, holder, now_utc_ns) : ROLE_NOBODY;
     return role_is_node(role) ? ROLE_NOBODY : role;
 }
 
 static void on_ping(struct session *session, const struct message *message, int64_t now_ns, int64_t now_utc_ns)
 {
-    session_reply(session, reply_pong_text(session_snapshot(session), message->t, now_utc_ns));
-    if (!message->active)
+    session_reply(session, reply_pong_text(session_snapshot(session), message->ping.t, now_utc_ns));
+    if (!message->ping.active)
         return;
     session->identity.active_ns = now_ns;
-    if (session->context->openid && session->identity.holder.signed_in)
-        openid_touch(session->context->openid, &session->identity.holder, now_ns);
+    if (session->context->sign_in.openid && session->identity.holder.signed_in)
+        openid_touch(session->context->sign_in.openid, &session->identity.holder, now_ns);
 }
 
 void session_check_token(struct session *session, int64_t now_ns, int64_t now_utc_ns)
@@ -105,19 +105,20 @@ static bool on_look(struct session *session, const struct message *message, stru
 
 static bool on_resize(struct session *session, const struct message *message, struct message_error *error)
 {
-    if (!session_reserve_pixels(session, message->width_px, message->height_px, error))
+    if (!session_reserve_pixels(session, message->size.width_px, message->size.height_px, error))
         return false;
-    session->view.width_px = message->width_px;
-    session->view.height_px = message->height_px;
+    session->view.width_px = message->size.width_px;
+    session->view.height_px = message->size.height_px;
     if (session_is_tile(session))
-        session_tile_fit(session, &session->tile.place, message->width_px, message->height_px, &session->view, &session->tile.layout);
+        session_tile_fit(session, &session->tile.place, message->size.width_px, message->size.height_px, &session->view,
+                         &session->tile.layout);
     session_scope_fit(session, &session->view);
     /* sets the named view again when the picture's size changes: if the view states no camera, its camera is computed from that
        size */
     if (session->scope.named[0] && session->identity.holder.views[0])
         return session_look(session, session->scope.named, &session->view, error);
-    if (message->pixel_ratio > 0)
-        session->pixel_ratio = message->pixel_ratio;
+    if (message->size.pixel_ratio > 0)
+        session->pixel_ratio = message->size.pixel_ratio;
     return true;
 }
 
@@ -259,7 +260,7 @@ static bool on_pair(struct session *session, const struct message *message, int6
     const struct session_context *context = session->context;
     bool pairs = message->type == MESSAGE_PAIR;
     char id[TOKEN_NAME_BYTES] = "";
-    if (!context->tokens) {
+    if (!context->sign_in.tokens) {
         message_refuse(error, "not_allowed", NULL, REFUSAL_UNPAIRED);
         return false;
     }
@@ -346,9 +347,9 @@ static bool in_order(const struct session *session, const struct message *messag
 static bool hand_on(struct session *session, const struct message *message, const char *text, struct message_error *error)
 {
     const struct session_context *context = session->context;
-    if (!context->hand_on || !message_is_handed_on(message))
+    if (!context->core.hand_on || !message_is_handed_on(message))
         return false;
-    if (!context->hand_on(context->hand_on_arg, session, text)) {
+    if (!context->core.hand_on(context->core.hand_on_arg, session, text)) {
         message_fail(error, "core_lost", "not done: the daemon that polls the devices (core) cannot be reached");
         session_reply_error(session, error);
     }
@@ -415,7 +416,7 @@ void session_on_message(struct session *session, const char *text, size_t count,
     bool good = parse(session, text, count, &message, &error);
     if (good)
         clear_claimed_name(session, &message);
-    if (good && session->context->hand_on && in_order(session, &message, &error) && hand_on(session, &message, text, &error))
+    if (good && session->context->core.hand_on && in_order(session, &message, &error) && hand_on(session, &message, text, &error))
         return;
     if (!good || !in_order(session, &message, &error) || !act(session, &message, now_ns, now_utc_ns, &error)) {
         session_record_refusal(session, &error);
@@ -443,8 +444,9 @@ static void tell_token(struct session *session, int64_t now_ns)
     bool same = view_equal(&identity->token_view, &session->view) && age_ns < TOKEN_NS;
     if (!session->hello || !identity->tokens || age_ns < NS_PER_S || same)
         return;
-    const struct snapshot *snapshot = session->context->snapshot;
-    char *token = view_token_make(session->context->token_keys, session, snapshot->taken_utc_ns + (now_ns - snapshot->taken_mono_ns));
+    const struct snapshot *snapshot = session->context->readings.snapshot;
+    char *token =
+        view_token_make(session->context->sign_in.token_keys, session, snapshot->taken_utc_ns + (now_ns - snapshot->taken_mono_ns));
     identity->token_ns = now_ns;
     if (token) {
         identity->token_view = session->view;
@@ -474,8 +476,8 @@ void session_on_tick(struct session *session, int64_t now_ns)
         session_pause(session);
     session_choose_again(session, now_ns);
     session_keep_pixels(session, now_ns);
-    session->owed.time |=
-        session->hello && session->context->services->snapshot_cache && session->context->history_first_us && !session->owed.told_beginning;
+    session->owed.time |= session->hello && session->context->services->snapshot_cache && session->context->readings.history_first_us &&
+                          !session->owed.told_beginning;
 }
 
 bool session_moves(const struct session *session, int64_t now_ns)

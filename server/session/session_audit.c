@@ -12,15 +12,15 @@
 static void record(const struct session *session, const char *event, const char *result, const char *what, const char *why)
 {
     const struct session_identity *identity = &session->identity;
-    audit_say(session->context->audit, &(struct audit_entry){ .event = event,
-                                                              .result = result,
-                                                              .who = identity->role == ROLE_NOBODY ? NULL : session_who(session),
-                                                              .role = name_of(names_role, (int)identity->role),
-                                                              .from = identity->from,
-                                                              .how = "stream",
-                                                              .through = identity->through[0] ? identity->through : NULL,
-                                                              .what = what,
-                                                              .why = why });
+    audit_say(session->context->records.audit, &(struct audit_entry){ .event = event,
+                                                                      .result = result,
+                                                                      .who = identity->role == ROLE_NOBODY ? NULL : session_who(session),
+                                                                      .role = name_of(names_role, (int)identity->role),
+                                                                      .from = identity->from,
+                                                                      .how = "stream",
+                                                                      .through = identity->through[0] ? identity->through : NULL,
+                                                                      .what = what,
+                                                                      .why = why });
 }
 
 static void add_alarms(struct text *what, const struct plant *plant, const struct alarm_request *request)
@@ -115,9 +115,9 @@ static char *accepted_what(const struct session *session, const struct message *
 {
     const struct scene *scene = session->context->services->scene;
     uint8_t *outcome = mem_array(scene->plant->tag_count + 1, 1);
-    size_t count = assumed_places_choose(scene, &message->accept, outcome);
+    size_t count = assumed_places_choose(scene, &message->tag_list.accept, outcome);
     char filter[400];
-    assumed_filter_text(scene->plant, &message->accept, filter, sizeof(filter));
+    assumed_filter_text(scene->plant, &message->tag_list.accept, filter, sizeof(filter));
     mem_free(outcome);
     return mem_printf("tag list: %zu assumed sensor place%s accepted (%s); the list is being activated", count, count == 1 ? "" : "s",
                       filter);
@@ -128,7 +128,7 @@ void session_record_save(const struct session *session, const struct message *me
     const char *plural = moved == 1 ? "" : "s";
     char *what = message->type == MESSAGE_ACCEPT_PLACES ? accepted_what(session, message)
                  : message->type == MESSAGE_RESTORE_TAGS
-                     ? mem_printf("tag list: %s restored; the list is being activated", message->kept)
+                     ? mem_printf("tag list: %s restored; the list is being activated", message->tag_list.kept)
                      : mem_printf("tag list: %zu sensor%s placed; the list is being activated", moved, plural);
     record(session, "place", "done", what, NULL);
     mem_free(what);

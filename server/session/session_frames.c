@@ -143,8 +143,8 @@ static bool is_calm(const struct session *session, int64_t now_ns)
 static bool refine_due(const struct session *session, int64_t now_ns)
 {
     const struct session_context *context = session->context;
-    bool others_move = now_ns < context->moving_until_ns && now_ns - session->demand.input_ns < MAX_POSTPONE_NS;
-    bool short_of = context->overloaded || is_slow(session);
+    bool others_move = now_ns < context->load.moving_until_ns && now_ns - session->demand.input_ns < MAX_POSTPONE_NS;
+    bool short_of = context->load.overloaded || is_slow(session);
     bool data_moves =
         short_of && now_ns - session->demand.preview_ns < LOADED_STILL_NS && now_ns - session->demand.refined_ns < LOADED_SHARE_NS;
     bool failed = session->demand.failed_ns && now_ns - session->demand.failed_ns < RETRY_DELAY_NS;
@@ -157,7 +157,7 @@ static bool refine_due(const struct session *session, int64_t now_ns)
    moves, and the thread is not overloaded. */
 static bool all_can_be_refined(const struct session *session, int64_t now_ns)
 {
-    return !session->context->overloaded && now_ns >= session->context->moving_until_ns;
+    return !session->context->load.overloaded && now_ns >= session->context->load.moving_until_ns;
 }
 
 /* Returns a side of a reduced frame. Rounds to the nearest even number, so that the frame keeps the shape of the view. */
@@ -298,7 +298,7 @@ void session_choose_again(struct session *session, int64_t now_ns)
 {
     double ns_per_byte = session->delivery.pacer.channel.ns_per_byte;
     struct codec_facts facts = { .bytes_per_s = ns_per_byte > 0 ? NS_PER_S / ns_per_byte : 0,
-                                 .cpu_free = 1 - session->context->cpu_used,
+                                 .cpu_free = 1 - session->context->load.cpu_used,
                                  .pixels = (long)session->view.width_px * session->view.height_px };
     if (!session->codec.list.choose || !decodes(session, WIRE_CODEC_H264) || !decodes(session, WIRE_CODEC_JPEG))
         return;
@@ -352,7 +352,7 @@ bool session_wants(const struct session *session, int64_t now_ns, struct frame_r
     *request = (struct frame_request){ .view = session_shown(session), .codec = session->codec.current, .asked_ns = now_ns };
     request->account = session->room.share ? session->room.share->account : 0;
     /* sets read_ns to 0: readings of a past instant never change, so no later change can require another request */
-    request->read_ns = request->view.at_us ? 0 : session->context->changed_ns;
+    request->read_ns = request->view.at_us ? 0 : session->context->readings.changed_ns;
     request->view.camera_seq = session->view.camera_seq;
     request->view.params_seq = session->view.params_seq;
     bool wanted = wants(session, now_ns, request);

@@ -19,7 +19,7 @@ static bool refuse_full(struct session *session, enum refusal_code why, int retr
 bool session_left_alone(const struct session *session, int64_t now_ns, struct message_error *error)
 {
     const struct session_identity *identity = &session->identity;
-    int64_t lock_ns = session->context->lock_ns, since_ns = identity->active_ns ? identity->active_ns : session->opened_ns;
+    int64_t lock_ns = session->context->sign_in.lock_ns, since_ns = identity->active_ns ? identity->active_ns : session->opened_ns;
     if (!lock_ns || identity->holder.signed_in || identity->holder.unattended || now_ns - since_ns <= lock_ns)
         return false;
     message_refuse_with(error, "locked", NULL, REFUSAL_LOCKED, "minutes=%.3g", (double)lock_ns / 60e9);
@@ -40,11 +40,12 @@ static bool judge_token(struct session *session, const char *token, int64_t now_
 {
     const struct session_context *context = session->context;
     struct token_holder holder;
-    bool good = tokens_find(context->tokens, token, now_utc_ns, &holder);
-    session->identity.login = context->login_throttle ? login_throttle_judge(context->login_throttle, session->identity.address,
-                                                                             good ? holder.hash : NULL, now_ns)
-                              : good                  ? LOGIN_GOOD
-                                                      : LOGIN_WRONG;
+    bool good = tokens_find(context->sign_in.tokens, token, now_utc_ns, &holder);
+    session->identity.login =
+        context->sign_in.login_throttle
+            ? login_throttle_judge(context->sign_in.login_throttle, session->identity.address, good ? holder.hash : NULL, now_ns)
+        : good ? LOGIN_GOOD
+               : LOGIN_WRONG;
     if (session->identity.login == LOGIN_HELD)
         return refuse_full(session, REFUSAL_TOKEN_GUESSES, LOGIN_WAIT_S, error);
     session->identity.holder = holder;
@@ -63,7 +64,8 @@ static bool judge_token(struct session *session, const char *token, int64_t now_
 static bool identify(struct session *session, const struct message *message, int64_t now_ns, int64_t now_utc_ns,
                      struct message_error *error)
 {
-    if (message->hello.token[0] && session->context->tokens && !judge_token(session, message->hello.token, now_ns, now_utc_ns, error))
+    if (message->hello.token[0] && session->context->sign_in.tokens &&
+        !judge_token(session, message->hello.token, now_ns, now_utc_ns, error))
         return false;
     if (role_may_send(session->identity.role, message, error))
         return true;
@@ -80,7 +82,7 @@ static bool admit(struct session *session, const struct message *message, const 
 {
     const struct session_context *context = session->context;
     bool is_tile = message->hello.tile.display > 0;
-    int width_px = is_tile ? message->width_px : view->width_px, height_px = is_tile ? message->height_px : view->height_px;
+    int width_px = is_tile ? message->size.width_px : view->width_px, height_px = is_tile ? message->size.height_px : view->height_px;
     enum refusal_code why = admission_refuses(context->admission, session->room.share, (int64_t)width_px * height_px);
     if (!why)
         return session_reserve_pixels(session, width_px, height_px, error);
@@ -99,7 +101,7 @@ static bool begin_tile(struct session *session, const struct message *message, s
     }
     if (!session_may_be(session, place, error))
         return false;
-    if (!session_tile_fit(session, place, message->width_px, message->height_px, view, &session->tile.layout)) {
+    if (!session_tile_fit(session, place, message->size.width_px, message->size.height_px, view, &session->tile.layout)) {
         message_refuse_with(error, "bad_field", "tile", REFUSAL_TILELESS, "display=%d\nwall=%s", place->display, place->wall);
         return false;
     }
@@ -113,7 +115,7 @@ static bool begin_tile(struct session *session, const struct message *message, s
 static bool begin_view(struct session *session, const struct message *message, const struct resumed *resumed, struct view *view,
                        struct message_error *error)
 {
-    if (!resumed && (message->width_px == 0 || message->codecs.count == 0)) {
+    if (!resumed && (message->size.width_px == 0 || message->codecs.count == 0)) {
         message_fail(error, "bad_field", "resume: the daemon no longer keeps this view: send hello with width, height and codecs");
         return false;
     }
@@ -123,10 +125,10 @@ static bool begin_view(struct session *session, const struct message *message, c
         view_set_trial(view, 0);
     }
     if (!resumed)
-        view_default(session->context->services->scene, message->width_px, message->height_px, view);
-    if (message->width_px) {
-        view->width_px = message->width_px;
-        view->height_px = message->height_px;
+        view_default(session->context->services->scene, message->size.width_px, message->size.height_px, view);
+    if (message->size.width_px) {
+        view->width_px = message->size.width_px;
+        view->height_px = message->size.height_px;
     }
     view->camera_seq = view->params_seq = 0;
     if (message->hello.tile.display && !begin_tile(session, message, view, error))
@@ -163,7 +165,8 @@ static bool find_resumed(const struct session *session, const char *token, int64
         return false;
     if (resumes_find(context->resumes, secret, session, now_ns, out))
         return true;
-    return view_token_read(context->token_keys, token, session, now_utc_ns, out) && !resumes_has_live(context->resumes, out->called);
+    return view_token_read(context->sign_in.token_keys, token, session, now_utc_ns, out) &&
+           !resumes_has_live(context->resumes, out->called);
 }
 
 bool session_hello(struct session *session, const struct message *message, int64_t now_ns, int64_t now_utc_ns, struct message_error *error)
@@ -202,7 +205,7 @@ bool session_hello(struct session *session, const struct message *message, int64
     session->identity.resumed = session->identity.returned = back;
     if (back)
         session->identity.number = resumed.called;
-    session->pixel_ratio = message->pixel_ratio > 0 ? message->pixel_ratio : before ? resumed.pixel_ratio : 1;
+    session->pixel_ratio = message->size.pixel_ratio > 0 ? message->size.pixel_ratio : before ? resumed.pixel_ratio : 1;
     resumes_open(context->resumes, session, session->identity.resume_secret);
     session->hello = session->owed.welcome = session->owed.tags_all = session->owed.status = session->demand.any = true;
     session->owed.time = context->services->snapshot_cache != NULL;

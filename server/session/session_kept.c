@@ -39,7 +39,7 @@ static int journal_state(const struct session *session, struct kept_answer *kept
 /* Returns whether alarm journal and saved file have the action on disk: 0, -EINPROGRESS or an error. */
 static int disk_state(const struct session *session, struct kept_answer *kept)
 {
-    int journal = journal_state(session, kept), file = file_writer_settled(session->context->file_writer, &kept->file);
+    int journal = journal_state(session, kept), file = file_writer_settled(session->context->records.file_writer, &kept->file);
     return journal ? journal : file;
 }
 
@@ -83,7 +83,7 @@ static void answer_now(struct session *session, struct kept_answer *kept, int di
 static bool try_to_answer(struct session *session, struct kept_answer **at, bool now)
 {
     struct kept_answer *kept = *at;
-    int disk = disk_state(session, kept), audit = audit_settled(session->context->audit, &kept->audit);
+    int disk = disk_state(session, kept), audit = audit_settled(session->context->records.audit, &kept->audit);
     if (!now && (disk == -EINPROGRESS || audit == -EINPROGRESS))
         return false;
     *at = kept->next;
@@ -95,7 +95,7 @@ static bool try_to_answer(struct session *session, struct kept_answer **at, bool
 struct kept_action session_kept_begin(const struct session *session)
 {
     const struct session_context *context = session->context;
-    struct kept_action action = { .file = file_writer_begin(context->file_writer), .audit = audit_begin(context->audit) };
+    struct kept_action action = { .file = file_writer_begin(context->records.file_writer), .audit = audit_begin(context->records.audit) };
     if (context->services->alarm_service)
         action.journal = alarm_service_begin(context->services->alarm_service);
     return action;
@@ -112,9 +112,9 @@ void session_kept_reply(struct session *session, const struct kept_action *actio
         kept->alarms = context->services->alarm_service;
         alarm_service_end(context->services->alarm_service, &kept->journal);
     }
-    file_writer_end(context->file_writer, &kept->file);
+    file_writer_end(context->records.file_writer, &kept->file);
     session_record_action(session, event, what, answer);
-    audit_end(context->audit, &kept->audit);
+    audit_end(context->records.audit, &kept->audit);
     while (*last)
         last = &(*last)->next;
     *last = kept;
@@ -132,8 +132,8 @@ bool session_settle(struct session *session)
             answered = true;
         else
             at = &(*at)->next;
-    if (session->kept && session->context->kept_answers)
-        session->context->kept_answers->waiting = true;
+    if (session->kept && session->context->records.kept_answers)
+        session->context->records.kept_answers->waiting = true;
     return answered;
 }
 

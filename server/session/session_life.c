@@ -21,7 +21,7 @@ struct session *session_create(const struct session_context *context, uint64_t i
 
 void session_keep_token(struct session *session, const char *token)
 {
-    if (session->context->hand_on)
+    if (session->context->core.hand_on)
         snprintf(session->identity.token, sizeof(session->identity.token), "%s", token ? token : "");
 }
 
@@ -72,7 +72,7 @@ void session_destroy(struct session **session_ptr)
 void session_retire(struct session **session_ptr)
 {
     struct session *session = *session_ptr;
-    struct kept_answers *answers = session->context->kept_answers;
+    struct kept_answers *answers = session->context->records.kept_answers;
     session_settle(session);
     if (!answers || !session_kept_waits(session)) {
         session_destroy(session_ptr);

@@ -63,7 +63,7 @@ int main(void)
     struct snapshot *snapshot = snapshot_create(TAGS);
     for (int i = 0; i < TAGS; i++)
         snapshot->readings[i] = (struct reading){ .value = 20 + i * 0.001, .quality = QUALITY_GOOD, .age_ns = i * NS_PER_MS };
-    const struct session_context context = { .plant = plant, .snapshot = snapshot };
+    const struct session_context context = { .plant = plant, .readings.snapshot = snapshot };
     measure(&context, PAGE);
     measure(&context, LONGEST_PAGE);
     snapshot_destroy(&snapshot);

@@ -74,8 +74,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
     const struct plant_services services = { .scene = (struct scene *)small_scene(), .baselines = baselines };
     const struct session_context context = { .plant = plant,
                                              .services = &services,
-                                             .snapshot = snapshot,
-                                             .links_up = up,
+                                             .readings.snapshot = snapshot,
+                                             .readings.links_up = up,
                                              .version = "1",
                                              .quotas = &quotas,
                                              .resumes = resumes,

@@ -15,9 +15,9 @@ int session_case_set_up(void **state)
     c->services.scene = (struct scene *)small_scene();
     c->context = (struct session_context){ .plant = small_scene()->plant,
                                            .services = &c->services,
-                                           .snapshot = c->snapshot,
-                                           .links_up = c->up,
-                                           .live = true,
+                                           .readings.snapshot = c->snapshot,
+                                           .readings.links_up = c->up,
+                                           .readings.live = true,
                                            .version = "1.2.3" };
     c->services.baselines = baselines_create();
     c->quotas = quotas_default();

@@ -323,7 +323,7 @@ CASE(large_readings_keep_their_digits)
         if (!strstr(text, row))
             fail_msg("expected %s in %s", row, text);
         mem_free(text);
-        const struct session_context context = { .plant = s->plant, .snapshot = snapshot };
+        const struct session_context context = { .plant = s->plant, .readings.snapshot = snapshot };
         text = reply_api_tags_text(&context, 0, 1);
         if (!strstr(text, row = test_printf("\"value\":%s,", cases[i].text)))
             fail_msg("expected %s in %s", row, text);

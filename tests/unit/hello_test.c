@@ -55,11 +55,11 @@ static void begin(struct hello_fixture *f)
     f->services = (struct plant_services){ .scene = (struct scene *)small_scene(), .baselines = baselines_create() };
     f->context = (struct session_context){ .plant = small_scene()->plant,
                                            .services = &f->services,
-                                           .snapshot = test_snapshot(small_scene()->plant->tag_count),
-                                           .links_up = (const bool[]){ true },
+                                           .readings.snapshot = test_snapshot(small_scene()->plant->tag_count),
+                                           .readings.links_up = (const bool[]){ true },
                                            .version = "1.2.3",
                                            .quotas = &f->quotas,
-                                           .tokens = f->tokens,
+                                           .sign_in.tokens = f->tokens,
                                            .resumes = resumes_create(),
                                            .admission = &f->admission };
 }
@@ -180,7 +180,7 @@ CASE(a_revoked_token_ends_its_sessions_and_no_others)
    token's holder, because the token was not checked. */
 CASE(a_login_that_is_held_up_keeps_no_holder)
 {
-    struct login_throttle *throttle = f->context.login_throttle = login_throttle_create();
+    struct login_throttle *throttle = f->context.sign_in.login_throttle = login_throttle_create();
     struct session *session;
     for (int i = 0; i < LOGIN_FAILURES + 1; i++) {
         session = open_session(f, ROLE_NOBODY, "{\"type\":\"hello\",\"token\":\"pc_wrong\"," SIZE "}");
@@ -191,7 +191,7 @@ CASE(a_login_that_is_held_up_keeps_no_holder)
     assert_int_equal(session->identity.login, LOGIN_HELD);
     assert_int_equal(session->identity.holder.role, ROLE_NOBODY);
     leave(f, &session);
-    f->context.login_throttle = NULL;
+    f->context.sign_in.login_throttle = NULL;
     login_throttle_destroy(&throttle);
 }
 

@@ -101,8 +101,8 @@ TEST(fields_arrive)
     struct message m = parse("{\"type\":\"hello\",\"width\":640,\"height\":360,\"codecs\":[\"av1\",\"png\",\"jpeg\",\"png\"],"
                              "\"camera\":{\"seq\":9,\"eye\":[1,2,3],\"target\":[4,5,6],\"fov\":50}}");
     assert_int_equal(m.type, MESSAGE_HELLO);
-    assert_int_equal(m.width_px, 640);
-    assert_int_equal(m.height_px, 360);
+    assert_int_equal(m.size.width_px, 640);
+    assert_int_equal(m.size.height_px, 360);
     assert_true(m.codecs.count == 2 && m.codecs.at[0] == WIRE_CODEC_PNG && m.codecs.at[1] == WIRE_CODEC_JPEG && !m.codecs.choose);
     assert_true(m.hello.has_camera && !m.hello.has_params);
     assert_int_equal(m.seq, 9);
@@ -562,7 +562,7 @@ TEST(damaged_messages_stay_harmless)
         if (m.type == MESSAGE_CAMERA)
             assert_true(camera_valid(&m.camera));
         if (m.type == MESSAGE_HELLO)
-            assert_true(view_size_valid(m.width_px, m.height_px));
+            assert_true(view_size_valid(m.size.width_px, m.size.height_px));
     }
     assert_true(taken > 1000);
 }

@@ -572,7 +572,7 @@ CASE(readings_come_with_the_next_camera_of_a_slow_drag)
     show(f);
     for (int camera = 1; camera <= 5; camera++) {
         say(f, test_printf("{\"type\":\"camera\",\"seq\":%d,\"eye\":[9,9,%d],\"target\":[0,0,1]}", camera, camera + 5));
-        f->context.changed_ns = f->now_ns;
+        f->context.readings.changed_ns = f->now_ns;
         request = show(f);
         assert_true(request.urgency == URGENCY_INPUT && request.read_ns == f->now_ns);
         f->now_ns += 50 * MS;
@@ -592,7 +592,7 @@ CASE(nobody_is_refined_while_another_moves)
     show(f);
     for (int i = 0; i < 9; i++) {
         f->now_ns += NS_PER_S;
-        f->context.moving_until_ns = f->now_ns + 200 * MS;
+        f->context.load.moving_until_ns = f->now_ns + 200 * MS;
         assert_false(ask(f, &request));
         session_on_data(f->session, f->now_ns);
         assert_true(show(f).view.tier == TIER_PREVIEW);
@@ -608,7 +608,7 @@ CASE(others_may_move_for_a_while_not_for_ever)
     greet(f);
     show(f);
     f->now_ns += 11 * NS_PER_S;
-    f->context.moving_until_ns = f->now_ns + 200 * MS;
+    f->context.load.moving_until_ns = f->now_ns + 200 * MS;
     assert_true(ask(f, &request));
     assert_true(request.view.tier == TIER_REFINED);
 }
@@ -617,7 +617,7 @@ CASE(data_on_a_loaded_server_is_not_refined_at_once)
 {
     struct frame_request request;
     get_refined(f);
-    f->context.overloaded = true;
+    f->context.load.overloaded = true;
     request = show_data(f, false);
     assert_true(request.view.tier == TIER_PREVIEW && request.urgency == URGENCY_DATA);
     f->now_ns += 900 * MS;
@@ -631,7 +631,7 @@ CASE(data_on_a_loaded_server_does_not_put_refinement_off_for_ever)
 {
     int refined = 0;
     get_refined(f);
-    f->context.overloaded = true;
+    f->context.load.overloaded = true;
     for (int i = 0; i < 20; i++) { /* 10 s */
         f->now_ns += 500 * MS;
         refined += show_data(f, false).view.tier == TIER_REFINED;
@@ -647,7 +647,7 @@ CASE(data_that_changes_nothing_does_not_end_a_refinement_that_it_overtook)
     greet(f);
     show(f);
     f->now_ns += NS_PER_S;
-    f->context.overloaded = true;
+    f->context.load.overloaded = true;
     assert_true(ask(f, &refined) && refined.view.tier == TIER_REFINED);
     session_on_data(f->session, f->now_ns += 1500 * MS);
     assert_true(ask(f, &data) && data.or_moving);
@@ -710,7 +710,7 @@ CASE(a_preview_that_comes_after_a_refined_picture_does_not_stay)
     struct frame_request refined, preview;
     greet(f);
     show(f);
-    f->context.overloaded = true;
+    f->context.load.overloaded = true;
     for (int of_codec = 0; of_codec < 2; of_codec++) {
         f->now_ns += 2 * NS_PER_S;
         assert_true(ask(f, &refined) && refined.view.tier == TIER_REFINED);
@@ -739,7 +739,7 @@ CASE(data_leaves_a_refined_picture_that_is_quick_to_color)
 {
     struct frame_request request;
     get_refined(f);
-    f->context.overloaded = true;
+    f->context.load.overloaded = true;
     for (int i = 0; i < 120; i++) {
         f->now_ns += 500 * MS;
         request = show_data(f, true);
@@ -1160,7 +1160,7 @@ CASE(codecs_are_chosen_and_chosen_again)
     assert_true(ask(f, &request) && request.codec == WIRE_CODEC_H264 && request.alone);
     paint_nothing(f, &request);
     f->session->delivery.pacer.channel.ns_per_byte = 1;
-    f->context.cpu_used = 1;
+    f->context.load.cpu_used = 1;
     for (int i = 0; i < 60; i++, f->now_ns += 100 * MS)
         session_on_tick(f->session, f->now_ns);
     assert_int_equal(f->session->codec.current, WIRE_CODEC_JPEG);

@@ -15,9 +15,9 @@ static int set_up(void **state)
 {
     session_case_set_up(state);
     struct session_case *f = *state;
-    f->context.live = false;
+    f->context.readings.live = false;
     f->services.snapshot_cache = snapshot_cache_create();
-    f->context.history_first_us = NOW_US - INT64_C(3600000000);
+    f->context.readings.history_first_us = NOW_US - INT64_C(3600000000);
     return 0;
 }
 
@@ -125,7 +125,7 @@ CASE(test_the_client_is_told_where_it_is)
     bring(f, 60, 5);
     json_t *time = hear(f, "time");
     assert_non_null(time);
-    assert_int_equal(json_integer_value(json_object_get(time, "from_us")), f->context.history_first_us);
+    assert_int_equal(json_integer_value(json_object_get(time, "from_us")), f->context.readings.history_first_us);
     assert_int_equal(number(time, "at_us"), NOW_US - 60000000);
     say(f, "{\"type\":\"time\",\"at_us\":null}");
     time = hear(f, "time");

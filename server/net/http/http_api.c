@@ -249,7 +249,7 @@ int api_link(struct server_context *server, struct http_exchange *request)
     if (!request_args(request->wsi, &args, &error) || args.count != 1 || !arg_of(&args, "id"))
         return request_answer_text(request, HTTP_STATUS_BAD_REQUEST, "expected id=ID\n");
     const char *view = short_links_find(server->params.plant.short_links, arg_of(&args, "id"));
-    if (!view && server->params.plant.core_link && !(server->session_context.core_up && server->core.listed))
+    if (!view && server->params.plant.core_link && !(server->session_context.core.up && server->core.listed))
         return request_refuse(request, HTTP_STATUS_SERVICE_UNAVAILABLE, REFUSAL_CORELESS);
     if (!view)
         return request_refuse(request, HTTP_STATUS_NOT_FOUND, REFUSAL_LINKLESS);

@@ -37,11 +37,12 @@ char *neighbour_text(struct neighbour_text_cache *cache, const struct session_co
     json_t *list = json_array();
     struct disagreement *all = NULL;
     size_t count = 0, capacity = 0;
-    int64_t utc_ns = context->snapshot->taken_utc_ns;
+    int64_t utc_ns = context->readings.snapshot->taken_utc_ns;
     for (size_t a = 0; a < context->services->scene->asset_count; a++) {
         if (tag >= 0 && plant->tags[tag].asset != (int)a)
             continue;
-        const struct neighbours_kept *found = neighbours_look(&cache->found, context->services->scene, (int)a, group, context->snapshot);
+        const struct neighbours_kept *found =
+            neighbours_look(&cache->found, context->services->scene, (int)a, group, context->readings.snapshot);
         mem_grow(&all, &capacity, count + found->count + 1, sizeof(*all));
         for (size_t i = 0; i < found->count; i++)
             if (tag < 0 || found->list[i].tag == tag)

@@ -230,11 +230,11 @@ static char *join(char *first, char *second)
    Builds the lists on first use; the caller frees the text with mem_free. */
 static char *lists_said(const struct session_context *context, enum audience_lists kind)
 {
-    if (!context->lists_said)
+    if (!context->caches.lists_said)
         return lists_text(context, kind);
-    if (!context->lists_said[kind])
-        context->lists_said[kind] = lists_text(context, kind);
-    return mem_strdup(context->lists_said[kind]);
+    if (!context->caches.lists_said[kind])
+        context->caches.lists_said[kind] = lists_text(context, kind);
+    return mem_strdup(context->caches.lists_said[kind]);
 }
 
 char *reply_welcome_text(const struct session *session, int64_t now_utc_ns)
@@ -244,7 +244,7 @@ char *reply_welcome_text(const struct session *session, int64_t now_utc_ns)
         json_pack("{s:s,s:s,s:I,s:o,s:I}", "type", "welcome", "protocol", WIRE_SUBPROTOCOL, "session", (json_int_t)session->identity.number,
                   "codec", string(name_of(names_codec, (int)session->codec.current)), "time_us", us(now_utc_ns));
     json_t *params = json_object();
-    char *token = view_token_make(session->context->token_keys, session, now_utc_ns);
+    char *token = view_token_make(session->context->sign_in.token_keys, session, now_utc_ns);
     const char *resume = token ? token : session->identity.resume_secret;
     json_object_update_new(object, json_pack("{s:s,s:s,s:I,s:b,s:o}", "role", name_of(names_role, (int)session->identity.role), "resume",
                                              resume, "resume_s", (json_int_t)(RESUME_KEPT_NS / 1000000000), "resumed",

@@ -65,19 +65,19 @@ char *reply_status_text(const struct session_context *context, bool for_engineer
     json_t *links = json_array();
     for (size_t i = 0; i < context->plant->source_count; i++) {
         const struct plant_source *source = &context->plant->sources[i];
-        json_t *link = json_pack("{s:o,s:b}", "source", string(source->id), "up", context->links_up[i]);
+        json_t *link = json_pack("{s:o,s:b}", "source", string(source->id), "up", context->readings.links_up[i]);
         if (source->simulated)
             json_object_set_new(link, "simulated", json_true());
         json_array_append_new(links, link);
     }
-    if (context->hand_on) /* adds one more source to the list on a renderer (daemon that draws for a core): the link to its core */
-        json_array_append_new(links, json_pack("{s:s,s:b}", "source", "core", "up", context->core_up));
-    json_t *status = json_pack("{s:s,s:o,s:I,s:b,s:b}", "type", "status", "links", links, "time_us", us(now_utc_ns), "live", context->live,
-                               "clock_set", context->clock.set);
-    if (context->clock.error_s > 0)
-        json_object_set_new(status, "clock_error_ms", json_integer(clock_state_error_ms(&context->clock)));
-    if (context->clock.leap_s)
-        json_object_set_new(status, "leap_s", json_integer(context->clock.leap_s));
+    if (context->core.hand_on) /* adds one more source to the list on a renderer (daemon that draws for a core): the link to its core */
+        json_array_append_new(links, json_pack("{s:s,s:b}", "source", "core", "up", context->core.up));
+    json_t *status = json_pack("{s:s,s:o,s:I,s:b,s:b}", "type", "status", "links", links, "time_us", us(now_utc_ns), "live",
+                               context->readings.live, "clock_set", context->readings.clock.set);
+    if (context->readings.clock.error_s > 0)
+        json_object_set_new(status, "clock_error_ms", json_integer(clock_state_error_ms(&context->readings.clock)));
+    if (context->readings.clock.leap_s)
+        json_object_set_new(status, "leap_s", json_integer(context->readings.clock.leap_s));
     if (for_engineer && context->standby)
         json_object_set(status, "standby", context->standby);
     return json_text(status, DIGITS);
@@ -107,7 +107,7 @@ char *reply_api_tags_text(const struct session_context *context, size_t first, s
     const struct plant *plant = context->plant;
     json_t *list = json_array();
     for (size_t i = first; i < plant->tag_count && i - first < count; i++) {
-        const struct reading *r = &context->snapshot->readings[i];
+        const struct reading *r = &context->readings.snapshot->readings[i];
         json_t *object = reply_tag(plant, &plant->tags[i]);
         json_object_set_new(object, "value", value_of(r));
         json_object_set_new(object, "quality", string(quality_class(r->quality)));
@@ -117,7 +117,7 @@ char *reply_api_tags_text(const struct session_context *context, size_t first, s
             json_object_set_new(object, "simulated", json_true());
         json_array_append_new(list, object);
     }
-    json_t *page = json_pack("{s:I,s:I,s:I,s:o}", "time_us", us(context->snapshot->taken_utc_ns), "total", (json_int_t)plant->tag_count,
-                             "first", (json_int_t)first, "tags", list);
+    json_t *page = json_pack("{s:I,s:I,s:I,s:o}", "time_us", us(context->readings.snapshot->taken_utc_ns), "total",
+                             (json_int_t)plant->tag_count, "first", (json_int_t)first, "tags", list);
     return json_text(page, READING_DIGITS);
 }

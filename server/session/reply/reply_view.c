@@ -160,7 +160,7 @@ char *reply_time_text(const struct session *session)
 {
     const struct travel *travel = session->following.leader ? &session->following.leader->travel : &session->travel;
     return json_text(json_pack("{s:s,s:o,s:f,s:o}", "type", "time", "at_us", instant(session_view(session)->at_us), "speed", travel->speed,
-                               "from_us", instant(session->context->history_first_us)),
+                               "from_us", instant(session->context->readings.history_first_us)),
                      DIGITS);
 }
 

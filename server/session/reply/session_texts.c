@@ -103,7 +103,7 @@ static void add_tags(struct session *session, int64_t now_ns, struct text *out)
 {
     const struct session_context *context = session->context;
     const struct snapshot *snapshot = session_snapshot(session);
-    struct tag_text_cache *cache = snapshot == context->snapshot ? context->tag_texts : NULL;
+    struct tag_text_cache *cache = snapshot == context->readings.snapshot ? context->caches.tag_texts : NULL;
     add_owned(session, out, tag_text_cache_get(cache, context->plant, snapshot, session->owed.tag_changes, session->owed.tags_all));
     session->owed.tags = session->owed.tags_all = false;
     session->owed.tags_ns = now_ns;
@@ -126,7 +126,7 @@ bool session_next_text(struct session *session, int64_t now_ns, int64_t now_utc_
     } else if (session->owed.time) {
         add_owned(session, out, reply_time_text(session));
         session->owed.time = false;
-        session->owed.told_beginning = session->context->history_first_us != 0;
+        session->owed.told_beginning = session->context->readings.history_first_us != 0;
     } else if (session->following.followers_text) {
         add_owned(session, out, session->following.followers_text);
         session->following.followers_text = NULL;
@@ -153,7 +153,7 @@ bool session_next_text(struct session *session, int64_t now_ns, int64_t now_utc_
         session->owed.status = false;
     } else if (alarms_due(session)) {
         add_owned(session, out,
-                  alarms_text(context->alarm_texts, context->services->alarm_service, context->plant, now_utc_ns,
+                  alarms_text(context->caches.alarm_texts, context->services->alarm_service, context->plant, now_utc_ns,
                               &session->owed.alarms_number));
         session->owed.alarms_sent = true;
     } else if (session_tags_due(session, now_ns)) {

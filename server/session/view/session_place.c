@@ -62,7 +62,7 @@ bool session_ask_coverage(struct session *session, const struct message *message
     int group = message->coverage.group >= 0 ? message->coverage.group : session->view.field.group;
     if (!can_place(session, error))
         return false;
-    placing_request_coverage(context->services->placing, session->placement.set, group, message->coverage.far_m, context->snapshot,
+    placing_request_coverage(context->services->placing, session->placement.set, group, message->coverage.far_m, context->readings.snapshot,
                              session->id, message->seq);
     return true;
 }
@@ -94,7 +94,7 @@ bool session_save_tags(struct session *session, const struct message *message, s
         message_refuse(error, "bad_field", "save_tags", REFUSAL_UNMOVED);
         return false;
     }
-    if (context->saving) {
+    if (context->records.saving) {
         session_reply(session, tags_refused_text(message->seq, &(struct refusal){ .code = REFUSAL_BUSY }));
         return true;
     }
@@ -114,7 +114,7 @@ bool session_check_loop(struct session *session, const struct message *message, 
         return false;
     }
     const struct kept_action action = session_kept_begin(session);
-    char *answer = loop_check_do(context->services->loop_checks, context->plant, context->snapshot, message, session_who(session));
+    char *answer = loop_check_do(context->services->loop_checks, context->plant, context->readings.snapshot, message, session_who(session));
     session_kept_reply(session, &action, "proof", session_loop_check_what(session, message, answer), answer);
     return true;
 }

@@ -130,8 +130,8 @@ static bool step(struct session *session, int64_t now_ns, int64_t now_utc_ns)
         come_back(session, now_ns);
         return false;
     }
-    if (travel->speed < 0 && at_us <= session->context->history_first_us) {
-        at_us = session->context->history_first_us;
+    if (travel->speed < 0 && at_us <= session->context->readings.history_first_us) {
+        at_us = session->context->readings.history_first_us;
         travel->speed = 0;
     }
     go(session, at_us);

@@ -19,7 +19,7 @@ struct view session_shown(const struct session *session)
 const struct snapshot *session_snapshot(const struct session *session)
 {
     const struct session *seen = session->following.leader ? session->following.leader : session;
-    return seen->travel.historical ? &seen->travel.historical->snapshot : session->context->snapshot;
+    return seen->travel.historical ? &seen->travel.historical->snapshot : session->context->readings.snapshot;
 }
 
 bool session_apply_params(const struct session *session, const struct message *message, struct view *view, struct message_error *error)
