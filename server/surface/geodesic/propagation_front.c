@@ -23,6 +23,11 @@
    instead */
 #define MAX_DEPTH 32
 #define NO_LENGTH 1e-300 /* avoids division by 0 */
+/* A point whose neighbours already have offers is processed again if its distance falls by at least this fraction. Each smaller
+   correction would spread over the whole surface. */
+#define CORRECTION 3e-4f
+/* maximum number of entries in the queue per point of the mesh, which bounds the time that corrections take */
+#define MAX_ENTRIES 16
 
 typedef float lanes __attribute__((vector_size(4 * PROPAGATION_FAN)));
 /* mask with one lane per neighbour, whose bits are all set or all clear */
@@ -77,11 +82,11 @@ static inline void offer(const struct propagation *propagation, struct propagati
         return;
     if (front->distance_m[point] == INFINITY)
         fetch_fans(propagation, point);
+    const bool is_correction = distance_m < front->distance_m[point] * (1 - CORRECTION);
     front->distance_m[point] = distance_m;
-    if (front->settled[point])
-        /* skips a settled point (one whose neighbours were already offered distances), because each small correction would
-           spread over the whole surface */
+    if (front->settled[point] && (!is_correction || front->item_count >= MAX_ENTRIES * propagation->mesh->point_count))
         return;
+    front->settled[point] = 0;
     if (front->item_count == front->item_capacity)
         mem_grow(&front->items, &front->item_capacity, front->item_count + 1, sizeof(*front->items));
     /* Converts the distance to a bucket number via int64_t, for which the processor has a single instruction. Correct, because
@@ -215,7 +220,9 @@ SIMD_BODY void look_round(struct front_turn *turn)
     memcpy(&length, fan->length_m, sizeof(length));
     memcpy(&cosine, fan->cosine, sizeof(cosine));
     memcpy(&sine, fan->sine, sizeof(sine));
-    mask takes = (each > turn->d) & (length >= zero);
+    /* a neighbour may be nearer to the source than this point: in an obtuse triangle, the path to it may pass through the edge
+       from this point to a third one that is nearer still */
+    mask takes = length >= zero;
     length = (lanes)((mask)length & INT32_MAX);
     offers_of(&turn->d, &turn->reached, &each, &length, &cosine, &sine, &offers);
     takes &= offers < each;
