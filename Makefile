@@ -284,8 +284,8 @@ gpu_tests  := $(patsubst tests/%.c,$(out)/tests/%,$(wildcard tests/gpu/*_test.c)
 support    := $(out)/lib/support.a
 $(support): $(call objects,$(wildcard tests/support/*.c tests/support/*.cc))
 # Tests that compare distances with an exact solver of CGAL.
-$(out)/tests/unit/accuracy_test $(out)/tests/unit/contact_test: $(call objects,$(wildcard tests/oracle/*.cc))
-$(out)/tests/unit/accuracy_test $(out)/tests/unit/contact_test: pkg_libs += -lgmp -lmpfr
+$(foreach t,accuracy along_truth contact,$(out)/tests/unit/$(t)_test): $(call objects,$(wildcard tests/oracle/*.cc))
+$(foreach t,accuracy along_truth contact,$(out)/tests/unit/$(t)_test): pkg_libs += -lgmp -lmpfr
 $(foreach t,rvm rvm_fuzz outline_fuzz,$(out)/tests/unit/$(t)_test): $(out)/lib/import.a
 $(out)/tests/unit/revision_test: $(out)/lib/import.a $(out)/lib/match.a
 $(out)/tests/unit/rvm_test $(out)/tests/unit/rvm_fuzz_test $(out)/tests/unit/revision_test: pkg_libs += -lGLU

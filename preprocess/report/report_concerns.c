@@ -18,9 +18,6 @@
 /* an asset is reported if the error of interpolation inside triangles ("bend") is too large or unknown on more than this share
    of its surface */
 #define BENT_SHARE 1e-3
-/* The report warns of inverse distance weights from this power on: then the error of distances alone can change a value by more
-   than two colour steps (1/255 of the range each). */
-#define HIGH_POWER 5
 
 const char *const report_states[] = { "left", "failed", "unchanged", "shared", "built" };
 
@@ -107,7 +104,7 @@ static void add_powers(struct concerns *concerns, const struct prepare *prepare,
             const struct plant_tag *tag = &prepare->plant->tags[asset->sensors[s].tag];
             sensors += tag->group == (int)g && !tag->place.assumed;
         }
-        if (sensors > 1 && group->interpolation == INTERPOLATION_SHEPARD && group->power >= HIGH_POWER)
+        if (sensors > 1 && group->interpolation == INTERPOLATION_SHEPARD && group->power >= PLANT_HIGH_POWER)
             add_concern(
                 concerns, asset, 1 + steps / 255,
                 mem_printf("values of group '%s' on the surface may err by up to %.0f steps of colour (1/255 of the range): power %g "

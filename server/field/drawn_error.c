@@ -27,10 +27,14 @@ enum { GROUP = 64, GRAIN = 1024, MAX_PIECES = 96 };
 /* for interpolation paper (Algorithm 1 of Kim & Suh): longest side of a triangle that needs no samples, as a fraction of the
    distance to the nearest sensor and of the radius R */
 #define PAPER_ACCEPTED 0.015f
-/* smallest power (exponent of the distance) of the interpolation shepard (inverse distance weighting) for which the effect of
-   wrong distances is measured: with smaller powers, it changed no value by a colour step */
-#define AMPLIFYING_POWER 8
 #define STEP_OF_COLOR (1 / 255.0f)
+/* Bound on the error of a distance inside a triangle in which paths from two sides meet: this fraction of the triangle's longest
+   side times the sine of half of the angle between the paths. With 0.2, it was exceeded at 3 of 48,600 random places of
+   along_truth_test, with 0.1 at 8, with 0.3 at none. */
+#define RIDGE_PART 0.3f
+/* relative error of stored distances that does not count as a ridge: rounding, and differences between the errors of neighbouring
+   vertices. Marking another 1.5 % of the places with 5e-4 finds no other error. */
+#define ROUNDING 2e-3f
 /* largest accepted error of SHOW_BLIND, as a fraction of the colour scale. It grows so fast with distance that linear
    interpolation is a colour step off on most triangles. */
 #define BLIND_ACCEPTED 0.1f
@@ -40,6 +44,12 @@ enum { GROUP = 64, GRAIN = 1024, MAX_PIECES = 96 };
 /* if interpolation errors affect at least this fraction of the area of a level of detail, an error is stored for all vertices
    of the level, even for those without an error of their own */
 #define MARK_ALL 0.75
+/* estimated nanoseconds: to prepare a sensor's weight at a vertex; to look at a triangle; to look for a ridge in a triangle, and to
+   evaluate a sample point, for each sensor */
+#define PREPARE_WORK 2.0
+#define TRIANGLE_WORK 20.0
+#define RIDGE_WORK 30.0
+#define SAMPLE_WORK 20.0
 #define MIN_ERROR 1e-4f /* interpolation errors smaller than this are stored as 0 */
 
 struct triangle_piece {  /* part of a triangle; the error is sampled at the midpoint of the piece's longest side */
@@ -69,16 +79,25 @@ struct sampler { /* working memory of one thread that samples triangles */
 struct drawn_error_job {
     struct weights *weights;
     const struct field_params *params;
-    const uint8_t *usable, *members_marked;
+    const uint8_t *usable;
+    uint8_t *members_marked;
     float radius_m, accepted, error_m;
-    const uint32_t *members;
-    const double *ones;
+    uint32_t *members;
+    double *ones;
     uint32_t first;       /* index of the first triangle whose interpolation error to measure */
-    float *errors;        /* error of each triangle */
+    float *errors;        /* interpolation error of each triangle */
+    float *ridges;        /* error of values in each triangle where paths from two sides meet; NULL: not measured */
     float *vertex_errors; /* error of each vertex's value due to errors of geodesic distances; NULL: not measured */
     /* a value that depends on the distance to the nearest sensor alone, which is measured instead of the weights; NULL: the weights
        are measured */
     const struct drawn_near *near;
+    /* --- for jobs that measure the weights of one level of detail in steps */
+    struct field_params own_params; /* *params and *usable belong to the job */
+    uint8_t *own_usable;
+    uint32_t level;
+    bool resolved; /* preparation left no interpolation error, so only the effect of errors of distances is measured */
+    /* next block of vertices to prepare; next primitive of the level, and its next triangle, to measure */
+    size_t next_block, next_primitive, next_triangle;
 };
 
 /* --- weights at points ------------------------------------------------------------------------------------------------------ */
@@ -319,7 +338,7 @@ static void sample_group(struct sampler *sampler, float step)
 /* Returns true if errors of geodesic distances change the field's values noticeably, as they do with a high power. */
 static bool amplifies_distances(const struct weights *weights)
 {
-    return weights->distance != DISTANCE_EUCLIDEAN && weights->interpolation == INTERPOLATION_SHEPARD && weights->power >= AMPLIFYING_POWER;
+    return weights->distance != DISTANCE_EUCLIDEAN && weights->interpolation == INTERPOLATION_SHEPARD && weights->power >= PLANT_HIGH_POWER;
 }
 
 /* Returns a bound on the error of values due to errors of distances: a value v, which is the weighted mean of readings, changes
@@ -357,7 +376,78 @@ static void amplify_some(void *arg, size_t begin, size_t end)
     }
 }
 
+/* --- ridges ------------------------------------------------------------------------------------------------------------------ */
+
+struct ridge_triangle { /* shape of a triangle, with corner 0 as origin and the sides e to corner 1 and f to corner 2 */
+    float ee, ef, ff, divisor, longest_m;
+};
+
+/* Returns the largest error of a distance inside a triangle. far_m: distances of its corners from one sensor. If all paths come from
+   one side, a source in the triangle's plane fits these distances. Otherwise the corners' distances are too short for any such
+   source: the fitting one lies off the plane, by the sine of half of the angle between the paths times the distance. */
+static float ridge_error(const struct ridge_triangle *tri, const float far_m[3])
+{
+    const float a2 = far_m[0] * far_m[0], b = far_m[1], c = far_m[2], mean_m = (far_m[0] + b + c) / 3;
+    const float se = 0.5f * (tri->ee + a2 - b * b), sf = 0.5f * (tri->ff + a2 - c * c);
+    const float in_plane2 = (tri->ff * se * se - 2 * tri->ef * se * sf + tri->ee * sf * sf) / tri->divisor;
+    const float rounding = 2 * ROUNDING * mean_m * tri->longest_m / sqrtf(tri->divisor);
+    const float sine2 = (a2 - in_plane2) / (mean_m * mean_m) - rounding;
+    return sine2 > 0 ? RIDGE_PART * tri->longest_m * sqrtf(fminf(sine2, 1)) : 0;
+}
+
+/* Returns the error of values inside a triangle due to distances there that do not follow from those of its corners, for the
+   worst readings: relative to the spread of the readings (paper: to the largest). */
+static float ridge_error_of(const struct weights *weights, const uint32_t corners[3], float near_m)
+{
+    const struct field_layout *layout = weights->layout;
+    const float(*at)[3] = layout->file->view.positions_m;
+    const bool paper = weights->interpolation == INTERPOLATION_PAPER;
+    struct ridge_triangle tri = { 0 };
+    float total = 0, first = 0, second = 0;
+    for (int c = 0; c < 3; c++) {
+        float e = at[corners[1]][c] - at[corners[0]][c], f = at[corners[2]][c] - at[corners[0]][c];
+        tri.ee += e * e, tri.ef += e * f, tri.ff += f * f;
+    }
+    tri.divisor = tri.ee * tri.ff - tri.ef * tri.ef;
+    tri.longest_m = sqrtf(fmaxf(tri.ee, fmaxf(tri.ff, tri.ee + tri.ff - 2 * tri.ef)));
+    if (!(tri.divisor > 0))
+        return 0;
+    for (size_t m = 0; m < weights->member_count; m++) {
+        const uint32_t sensor = weights->members[m];
+        float far_m[3], scratch, error_m;
+        for (int k = 0; k < 3; k++)
+            far_m[k] = *layout_distances(layout, weights->distance, sensor, corners[k], 1, &scratch);
+        const float mean_m = (far_m[0] + far_m[1] + far_m[2]) / 3;
+        if (!(mean_m < weights->reach_m) || !(mean_m > 0))
+            continue;
+        const float weight = paper ? expf(weights->strength[sensor] * fmaxf(0, 1 - mean_m / weights->radius_m))
+                                   : weights->strength[sensor] * powf(near_m / mean_m, weights->power);
+        total += weight;
+        error_m = mean_m < weights->radius_m || !paper ? ridge_error(&tri, far_m) : 0;
+        const float change = paper ? (1 + weights->strength[sensor]) * error_m / weights->radius_m : weights->power * error_m / mean_m;
+        first += weight * change;
+        second += weight * weight * change;
+    }
+    if (!(total > 0))
+        return 0;
+    const float error = paper ? first / total : first / total - second / (total * total);
+    return error > 0.5f * STEP_OF_COLOR ? fminf(error, 1) : 0;
+}
+
 /* --- measuring the errors of an asset's triangles --------------------------------------------------------------------------- */
+
+static void measure_ridges(void *arg, size_t begin, size_t end)
+{
+    const struct drawn_error_job *job = arg;
+    const struct weights *weights = job->weights;
+    const uint32_t *indices = weights->layout->file->view.indices;
+    for (size_t t = job->first + begin; t < job->first + end; t++) {
+        const uint32_t *corners = indices + 3 * t;
+        const float near_m = fminf(weights->near_m[corners[0]], fminf(weights->near_m[corners[1]], weights->near_m[corners[2]]));
+        if (job->errors[t] < 1 && isfinite(near_m))
+            job->ridges[t] = ridge_error_of(weights, corners, fmaxf(near_m, 1e-6f));
+    }
+}
 
 /* Returns true if a triangle needs no samples: it is small compared with the distance to the nearest sensor or, in a coarse
    level, smaller than the pixels with which the level is drawn. */
@@ -407,13 +497,17 @@ static void measure_some(void *arg, size_t begin, size_t end)
     mem_free(sampler);
 }
 
+/* Prepares the weights of blocks of vertices, and measures the effect of errors of distances there. */
 static void prepare_some(void *arg, size_t begin, size_t end)
 {
-    struct weights *weights = arg;
-    for (size_t block = begin; block < end; block++) {
+    struct drawn_error_job *job = arg;
+    struct weights *weights = job->weights;
+    for (size_t block = job->first + begin; block < job->first + end; block++) {
         size_t at = block * KERNEL_BLOCK, left = weights->layout->vertex_count - at;
         weights_prepare(weights, at, left < KERNEL_BLOCK ? left : KERNEL_BLOCK);
     }
+    if (job->vertex_errors)
+        amplify_some(job, job->first + begin, job->first + end);
 }
 
 /* Returns the largest size of triangles that need no samples, as a fraction of the distance d to the nearest sensor; 0: all
@@ -481,12 +575,19 @@ static void raise_vertices(const struct asset_view *file, const struct asset_lev
     }
 }
 
-/* Merges the errors of a level's triangles into those of its vertices. errors: interpolation errors, by triangle. at_vertices:
-   by vertex: error caused by inaccurate distances, which is added to the vertex's error; NULL: none. */
-static void spread(struct weights *weights, float *errors, const float *at_vertices, const struct asset_level *level)
+/* Merges the errors of a level's triangles into those of its vertices, and adds the errors at ridges, and those at vertices that
+   inaccurate distances cause. */
+static void spread(struct weights *weights, const struct drawn_error_job *job, const struct asset_level *level)
 {
+    float *errors = job->errors;
+    const float *ridges = job->ridges, *at_vertices = job->vertex_errors;
     const struct asset_view *file = &weights->layout->file->view;
     float erring[WEIGHTS_ERRING], largest = find_erring(file, level, errors, erring), least = error_of_all(weights, erring, largest);
+    if (ridges) {
+        for (uint32_t t = 0; t < file->header->index_count / 3; t++)
+            errors[t] += ridges[t];
+        largest = find_erring(file, level, errors, erring);
+    }
     if (at_vertices) {
         if (!weights->interpolation_errors)
             weights->interpolation_errors = mem_try_array(weights->layout->vertex_count, sizeof(float));
@@ -506,45 +607,22 @@ static void spread(struct weights *weights, float *errors, const float *at_verti
     raise_vertices(file, level, errors, least, weights->errors);
 }
 
+/* Measures `count` triangles of a primitive from number `begin` on. */
+static void measure_range(struct drawn_error_job *job, const struct asset_primitive *primitive, size_t begin, size_t count,
+                          struct workers *workers)
+{
+    job->first = primitive->first_index / 3 + (uint32_t)begin;
+    workers_for(workers, count, GRAIN, measure_some, job);
+    if (job->ridges)
+        workers_for(workers, count, GRAIN, measure_ridges, job);
+}
+
 /* Measures the errors of interpolation in the triangles of one level of detail. */
 static void measure_triangles(struct drawn_error_job *job, const struct asset_level *level, struct workers *workers)
 {
     const struct asset_view *file = &job->weights->layout->file->view;
-    for (uint32_t p = level->first_primitive; p < level->first_primitive + level->primitive_count; p++) {
-        job->first = file->primitives[p].first_index / 3;
-        workers_for(workers, file->primitives[p].index_count / 3, GRAIN, measure_some, job);
-    }
-}
-
-/* Measures the errors of all triangles of one level of detail. resolved true: preparation left no interpolation error, so only
-   the effect of errors in distances is measured. */
-static void measure_level(struct drawn_error_job *job, const struct asset_level *level, bool resolved, struct workers *workers)
-{
-    struct weights *weights = job->weights;
-    size_t members = weights->member_count;
-    uint32_t *numbers = mem_array(members, sizeof(*numbers));
-    uint8_t *unmarked = mem_array(members, 1);
-    double *ones = mem_array(members, sizeof(*ones));
-    for (uint32_t m = 0; m < members; m++) {
-        numbers[m] = m;
-        ones[m] = 1;
-    }
-    job->members = numbers;
-    job->ones = ones;
-    job->members_marked = unmarked;
-    const size_t blocks = (level->vertex_count + KERNEL_BLOCK - 1) / KERNEL_BLOCK;
-    if (amplifies_distances(weights))
-        job->vertex_errors = mem_try_array(blocks * KERNEL_BLOCK, sizeof(float));
-    workers_for(workers, blocks, 4, prepare_some, weights);
-    if (job->vertex_errors)
-        workers_for(workers, blocks, 4, amplify_some, job);
-    if (!resolved)
-        measure_triangles(job, level, workers);
-    spread(weights, job->errors, job->vertex_errors, level);
-    mem_free(job->vertex_errors);
-    mem_free(numbers);
-    mem_free(unmarked);
-    mem_free(ones);
+    for (uint32_t p = level->first_primitive; p < level->first_primitive + level->primitive_count; p++)
+        measure_range(job, &file->primitives[p], 0, file->primitives[p].index_count / 3, workers);
 }
 
 /* Returns true if the field has the same value everywhere, and data everywhere: it is that of one sensor without a limit of its
@@ -580,8 +658,122 @@ static bool is_as_prepared(const struct weights *weights, const struct field_par
            plant_cuts_for_paper(group, layout->sensor_count);
 }
 
-void drawn_error_measure(struct weights *weights, const struct field_params *params, const uint8_t *usable, size_t vertices, bool in_range,
-                         struct workers *workers)
+/* --- measuring in steps --------------------------------------------------------------------------------------------------------- */
+
+static size_t block_count(const struct asset_level *level)
+{
+    return (level->vertex_count + KERNEL_BLOCK - 1) / KERNEL_BLOCK;
+}
+
+static struct drawn_error_job *job_create(struct weights *weights, const struct field_params *params, const uint8_t *usable, uint32_t level,
+                                          bool resolved)
+{
+    const struct field_layout *layout = weights->layout;
+    const size_t members = weights->member_count, triangles = layout->file->view.header->index_count / 3;
+    struct drawn_error_job *job = mem_new(sizeof(*job));
+    job->weights = weights;
+    job->own_params = *params;
+    job->params = &job->own_params;
+    job->own_usable = mem_array(layout->sensor_count, 1);
+    memcpy(job->own_usable, usable, layout->sensor_count);
+    job->usable = job->own_usable;
+    job->radius_m = weights->radius_m;
+    job->accepted = accepted_of(weights);
+    job->level = level;
+    job->error_m = layout->file->view.levels[level].error_m;
+    job->resolved = resolved;
+    job->members = mem_array(members, sizeof(*job->members));
+    job->members_marked = mem_array(members, 1);
+    job->ones = mem_array(members, sizeof(*job->ones));
+    for (uint32_t m = 0; m < members; m++) {
+        job->members[m] = m;
+        job->ones[m] = 1;
+    }
+    job->errors = mem_try_array(triangles, sizeof(float));
+    /* preparation cuts triangles at ridges, except for groups whose field is evaluated at each pixel with straight-line distances */
+    if (weights->distance != DISTANCE_EUCLIDEAN && (plant_group_is_exact(layout->group) || layout->trial))
+        job->ridges = mem_try_array(triangles, sizeof(float));
+    if (amplifies_distances(weights))
+        job->vertex_errors = mem_try_array(block_count(&layout->file->view.levels[level]) * KERNEL_BLOCK, sizeof(float));
+    weights->errors = weights->errors ? weights->errors : mem_try_array(layout->vertex_count, sizeof(float));
+    weights->errors_version++;
+    return job;
+}
+
+void drawn_error_forget(struct drawn_error_job **job_ptr)
+{
+    struct drawn_error_job *job = *job_ptr;
+    if (!job)
+        return;
+    mem_free(job->own_usable);
+    mem_free(job->members);
+    mem_free(job->members_marked);
+    mem_free(job->ones);
+    mem_free(job->errors);
+    mem_free(job->ridges);
+    mem_free(job->vertex_errors);
+    mem_free(job);
+    *job_ptr = NULL;
+}
+
+/* Returns the estimated nanoseconds to measure a triangle. */
+static double work_of(const struct drawn_error_job *job, const uint32_t corners[3])
+{
+    const struct weights *weights = job->weights;
+    const float(*at)[3] = weights->layout->file->view.positions_m;
+    const double members = (double)weights->member_count;
+    float longest_m = 0, near_m = INFINITY;
+    if (is_straight(job, corners))
+        return TRIANGLE_WORK + (job->ridges ? RIDGE_WORK * members : 0);
+    for (int k = 0; k < 3; k++) {
+        longest_m = fmaxf(longest_m, vecf_distance(at[corners[k]], at[corners[(k + 1) % 3]]));
+        near_m = fminf(near_m, weights->near_m[corners[k]]);
+    }
+    /* each halving of all pieces shortens them by a factor of sqrt(2) on average */
+    double halvings = (double)(longest_m / (near_m * STEP * fminf(1, MAX_POWER / weights->power))), pieces = 2 * halvings * halvings;
+    return TRIANGLE_WORK + members * (RIDGE_WORK + SAMPLE_WORK * (4 + (pieces < MAX_PIECES ? pieces : MAX_PIECES)));
+}
+
+/* Measures triangles of the job's level for about `work` nanoseconds, but at least one. Returns what is left of `work`. */
+static double measure_part(struct drawn_error_job *job, const struct asset_level *level, double work, struct workers *workers)
+{
+    const struct asset_view *file = &job->weights->layout->file->view;
+    const struct asset_primitive *primitive = &file->primitives[level->first_primitive + job->next_primitive];
+    const size_t all = primitive->index_count / 3;
+    size_t end = job->next_triangle;
+    for (; end < all && (end == job->next_triangle || work > 0); end++)
+        work -= isinf(work) ? 0 : work_of(job, file->indices + primitive->first_index + 3 * end);
+    measure_range(job, primitive, job->next_triangle, end - job->next_triangle, workers);
+    job->next_triangle = end < all ? end : 0;
+    job->next_primitive += end == all;
+    return work;
+}
+
+/* Continues the measuring of a level for about `work` nanoseconds. Returns true once the level is measured. */
+static bool job_go_on(struct drawn_error_job *job, double work, struct workers *workers)
+{
+    struct weights *weights = job->weights;
+    const struct asset_level *level = &weights->layout->file->view.levels[job->level];
+    const size_t blocks = block_count(level);
+    while (job->next_block < blocks && work > 0) {
+        const double each = PREPARE_WORK * KERNEL_BLOCK * (double)weights->member_count;
+        size_t left = blocks - job->next_block, count = work / each < (double)left ? (size_t)(work / each) + 1 : left;
+        count = count < left ? count : left;
+        job->first = (uint32_t)job->next_block;
+        workers_for(workers, count, 4, prepare_some, job);
+        job->next_block += count;
+        work -= (double)count * each;
+    }
+    while (job->next_block == blocks && !job->resolved && job->next_primitive < level->primitive_count && work > 0)
+        work = measure_part(job, level, work, workers);
+    if (job->next_block < blocks || (!job->resolved && job->next_primitive < level->primitive_count))
+        return false;
+    spread(weights, job, level);
+    return true;
+}
+
+bool drawn_error_measure(struct weights *weights, const struct field_params *params, const uint8_t *usable, size_t vertices, bool in_range,
+                         double work, struct workers *workers)
 {
     const struct field_layout *layout = weights->layout;
     const struct asset_view *file = &layout->file->view;
@@ -591,25 +783,23 @@ void drawn_error_measure(struct weights *weights, const struct field_params *par
     uint64_t bit = (uint64_t)1 << (number < 63 ? number : 63);
     /* measures nothing if each pixel evaluates the field, because frames then do not interpolate within triangles */
     if (layout_is_exact(layout, weights->interpolation, weights->distance))
-        return;
-    if (weights->measured_levels & bit || weights->prepared || layout->assumed || weights->member_count == 0 || is_constant(weights))
-        return;
+        return true;
+    if (!weights->measuring &&
+        (weights->measured_levels & bit || weights->prepared || layout->assumed || weights->member_count == 0 || is_constant(weights)))
+        return true;
     const bool resolved = layout->file->resolved_levels & bit && in_range && is_as_prepared(weights, params);
-    if (resolved && !amplifies_distances(weights))
-        return;
-    weights->measured_levels |= bit;
-    struct drawn_error_job job = { .weights = weights,
-                                   .params = params,
-                                   .usable = usable,
-                                   .radius_m = weights->radius_m,
-                                   .accepted = accepted_of(weights),
-                                   .error_m = file->levels[number].error_m,
-                                   .errors = mem_try_array(file->header->index_count / 3, sizeof(float)) };
-    weights->errors = weights->errors ? weights->errors : mem_try_array(layout->vertex_count, sizeof(float));
+    if (!weights->measuring && resolved && !amplifies_distances(weights))
+        return true;
+    if (!weights->measuring)
+        weights->measuring = job_create(weights, params, usable, number, resolved);
+    if (weights->measuring->errors && weights->errors && !job_go_on(weights->measuring, work, workers))
+        return false;
+    const uint32_t measured = weights->measuring->level;
+    weights->measured_levels |= (uint64_t)1 << (measured < 63 ? measured : 63);
     weights->errors_version++;
-    if (job.errors && weights->errors)
-        measure_level(&job, &file->levels[number], resolved, workers);
-    mem_free(job.errors);
+    drawn_error_forget(&weights->measuring);
+    /* another caller may have begun the job, for another level of detail */
+    return measured == number || drawn_error_measure(weights, params, usable, vertices, in_range, work, workers);
 }
 
 void drawn_error_mark(struct weights *weights, const struct field_params *params, const uint8_t *usable, const struct drawn_near *near,
@@ -627,7 +817,7 @@ void drawn_error_mark(struct weights *weights, const struct field_params *params
         memset(marks, 1, weights->layout->vertex_count);
         return;
     }
-    workers_for(workers, blocks, 4, prepare_some, weights);
+    workers_for(workers, blocks, 4, prepare_some, &job);
     for (uint32_t l = 0; l < file->header->level_count; l++) {
         job.error_m = file->levels[l].error_m;
         measure_triangles(&job, &file->levels[l], workers);

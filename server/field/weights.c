@@ -10,6 +10,7 @@
 
 #include "base/mem.h"
 #include "base/system/huge_pages.h"
+#include "field/drawn_error.h"
 #include "plant/influence.h"
 
 /* for the interpolation gp (Gaussian process): smallest fraction of the variance expected without readings that readings must
@@ -288,6 +289,7 @@ void weights_destroy(struct weights **weights_ptr)
     mem_free(weights->beyond_m);
     mem_free(weights->errors);
     mem_free(weights->interpolation_errors);
+    drawn_error_forget(&weights->measuring);
     influence_fill_destroy(&weights->fill);
     mem_free(weights);
     *weights_ptr = NULL;

@@ -89,6 +89,7 @@ struct weights {
     /* [vertex]: largest error of linear interpolation within the adjacent triangles, or WEIGHTS_SHOWS_NO_DATA; unit and method in
        drawn_error.h; NULL: not measured */
     float *errors;
+    struct drawn_error_job *measuring; /* unfinished measurement of `errors`, which are unknown until it ends; NULL: none */
     float *interpolation_errors; /* `errors` without the part due to errors of distances; NULL: `errors` has no such part */
     /* [vertex]: 1: a triangle at the vertex shows SHOW_BLIND with a larger error than drawn_error_mark() accepts; NULL: not measured */
     uint8_t *blind_marks;
