@@ -167,9 +167,6 @@ static void compare_pixel(const struct pixel_field *field, const struct view *vi
         low = fmin(low, (truth - view->range_min) / range);
         high = fmax(high, (truth - view->range_min) / range);
     }
-    if (getenv("DBG") && tally->pixels < 5)
-        printf("%g plain %g most %g empty %g\n", (double)pixel[0] * range + view->range_min, (double)plain[0].value, (double)field->most,
-               (double)field->empty);
     double off = fmax(low - (double)pixel[0], (double)pixel[0] - high) / STEP;
     tally->worst = fmax(tally->worst, isnan(pixel[0]) ? INFINITY : off);
     tally->pixels++;
