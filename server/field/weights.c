@@ -3,6 +3,7 @@
    sensor's weights, which follow from the sensor's distances. */
 #include "field/weights.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 #define XXH_INLINE_ALL
@@ -10,7 +11,6 @@
 
 #include "base/mem.h"
 #include "base/system/huge_pages.h"
-#include "field/drawn_error.h"
 #include "plant/influence.h"
 
 /* for the interpolation gp (Gaussian process): smallest fraction of the variance expected without readings that readings must
@@ -270,6 +270,7 @@ void weights_destroy(struct weights **weights_ptr)
     struct weights *weights = *weights_ptr;
     if (!weights)
         return;
+    assert(!weights->measuring);
     weights_key_finish(&weights->key);
     mem_free(weights->strength);
     mem_free(weights->decay);
@@ -289,7 +290,6 @@ void weights_destroy(struct weights **weights_ptr)
     mem_free(weights->beyond_m);
     mem_free(weights->errors);
     mem_free(weights->interpolation_errors);
-    drawn_error_forget(&weights->measuring);
     influence_fill_destroy(&weights->fill);
     mem_free(weights);
     *weights_ptr = NULL;

@@ -128,7 +128,8 @@ struct weights *weights_create(const struct field_layout *layout, const struct f
 /* Copies from other weights those computed arrays that are the same for both sets of parameters. While a user drags one
    parameter, these are most of the arrays. */
 void weights_copy_known(struct weights *weights, const struct weights *from);
-/* Frees the weights. Accepts a pointer to NULL; sets the pointer to NULL. */
+/* Frees the weights, whose errors are not being measured (drawn_error_forget()). Accepts a pointer to NULL; sets the pointer to
+   NULL. */
 void weights_destroy(struct weights **weights);
 /* Returns the size in bytes of the weights for this layout (sensors of a group on an asset), without cached columns (each
    sensor's weights at all vertices). */
