@@ -431,7 +431,8 @@ static float ridge_error_of(const struct weights *weights, const uint32_t corner
     if (!(total > 0))
         return 0;
     const float error = paper ? first / total : first / total - second / (total * total);
-    return error > 0.5f * STEP_OF_COLOR ? fminf(error, 1) : 0;
+    /* marks the triangle also if the weights overflow, so that the error is NaN */
+    return error <= 0.5f * STEP_OF_COLOR ? 0 : fminf(error, 1);
 }
 
 /* --- measuring the errors of an asset's triangles --------------------------------------------------------------------------- */

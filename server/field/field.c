@@ -12,11 +12,6 @@
 #include "field/update.h"
 #include "plant/influence.h"
 
-/* work in nanoseconds for which an update waits until the errors of new weights are known */
-#define MAX_WAIT 0.5e9
-/* work in nanoseconds of one call that continues measuring after that */
-#define LATE_WORK 4e6
-
 struct field *field_create(struct workers *workers, const struct scene *scene)
 {
     struct field *field = mem_new(sizeof(*field));
@@ -245,27 +240,7 @@ static void read_inputs(const struct field *field, struct field_state *state, co
         baselines_give(field->baselines, &baseline);
 }
 
-/* Measures the errors of the state's weights for about `work` nanoseconds. Returns true if the update must wait until they are
-   known. Does not wait longer than MAX_WAIT, nor if other sensors have become usable meanwhile: a picture must soon show that a
-   sensor is lost. The whole asset is then marked as uncertain, and each later call measures for at most LATE_WORK. */
-static bool wait_for_errors(struct field *field, struct field_state *state, size_t count, double work)
-{
-    struct weights *weights = state->weights;
-    work = state->is_late ? fmin(work, LATE_WORK) : work;
-    if (field_params_cover(&state->params) ||
-        drawn_error_measure(weights, &state->params, state->usable, count, update_is_in_range(state), work, field->workers)) {
-        state->waits_for = NULL;
-        state->waited = 0;
-        state->is_late = false;
-        return false;
-    }
-    state->waited += work;
-    state->is_late |= state->waited > MAX_WAIT || (state->waits_for && state->waits_for != weights);
-    state->waits_for = state->is_late ? NULL : weights;
-    return !state->is_late;
-}
-
-bool field_begin_update(struct field *field, struct field_state *state, const struct snapshot *snapshot, size_t count, double work)
+bool field_begin_update(struct field *field, struct field_state *state, const struct snapshot *snapshot, size_t count)
 {
     read_inputs(field, state, snapshot);
     if (state_needs_weights(state) && !weights_take(field, state)) {
@@ -276,8 +251,8 @@ bool field_begin_update(struct field *field, struct field_state *state, const st
     struct weights *weights = state->weights;
     if (state->params.show == SHOW_BLIND)
         mark_blind(field, state);
-    if (wait_for_errors(field, state, count, work))
-        return true;
+    if (!field_params_cover(&state->params))
+        drawn_error_measure(weights, &state->params, state->usable, count, update_is_in_range(state), (double)INFINITY, field->workers);
     uint64_t previous = weights->used;
     weights->used = field->tick;
     if (!state_is_behind(state) && state->scalars.ready >= count)
@@ -312,12 +287,8 @@ static const struct scalars *advance(struct field *field, int asset, const struc
         return &state->scalars;
     }
     state->wanted = state->wanted > count ? state->wanted : count;
-    if (!field_begin_update(field, state, snapshot, count, work))
+    if (!field_begin_update(field, state, snapshot, count))
         return NULL;
-    if (state->waits_for) {
-        *done = false;
-        return &state->scalars;
-    }
     *done = !state->update || update_go_on(state, field->workers, work, &field->versions);
     return &state->scalars;
 }

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Updates the fields (values interpolated between sensors) of many assets in parallel. */
-#include <math.h>
-
 #include "base/mem.h"
 #include "field/field_impl.h"
 #include "field/update.h"
@@ -34,7 +32,7 @@ void field_update_all(struct field *field, const int *assets, const size_t *coun
             continue;
         state->used = field->tick;
         state->wanted = state->wanted > counts[i] ? state->wanted : counts[i];
-        if (field_begin_update(field, state, snapshot, counts[i], (double)INFINITY) && state->update)
+        if (field_begin_update(field, state, snapshot, counts[i]) && state->update)
             together.states[begun++] = state;
     }
     /* calls update_is_light() only after all updates have begun: it needs the state's cached weights complete, and the beginning of

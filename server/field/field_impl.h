@@ -40,10 +40,9 @@ void field_trials_finish(struct field *field);
    NULL if the asset has no sensor of the group, or when out of memory. */
 struct field_state *field_state(struct field *field, int asset, const struct field_params *params);
 
-/* Reads the snapshot's readings into the state (computed field of an asset), measures the errors of its weights for about `work`
-   nanoseconds, and begins an update if one is necessary. Sets state->waits_for if the errors are not known yet: the update has not
-   begun, and the function must be called again. Returns false when out of memory; the state is then freed. */
-bool field_begin_update(struct field *field, struct field_state *state, const struct snapshot *snapshot, size_t count, double work);
+/* Reads the snapshot's readings into the state (computed field of an asset) and begins an update if one is necessary. Returns
+   false when out of memory; the state is then freed. */
+bool field_begin_update(struct field *field, struct field_state *state, const struct snapshot *snapshot, size_t count);
 
 /* --- the cache (field_cache.c) --- */
 

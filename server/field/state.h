@@ -45,12 +45,6 @@ struct field_state {
         uint8_t *marked;
     } lists[2];
     struct update *update; /* update in progress; NULL: none */
-    /* weights whose errors are being measured before the next update begins (only compared); NULL: none. waited: work spent on
-       measuring since then, in nanoseconds. is_late: the state no longer waits: until the errors are known, all vertices are
-       marked uncertain */
-    const struct weights *waits_for;
-    double waited;
-    bool is_late;
     size_t wanted;         /* number of vertices, from the first of the asset file on, that callers requested since the last update */
     uint64_t used;
     struct field_state *next;

@@ -235,9 +235,7 @@ void update_flags(const struct field_state *state, const struct weights *weights
     uint8_t spread = fill && !blind && at->no_data == 0 && !at->no_limits ? weights->lost[vertex] : 0;
     at->uncertain = uncertain_of(marked, total, spread);
     at->lacking = weights_lacking_at(weights, vertex, filled);
-    /* errors are unknown until they are measured: the whole asset is marked */
-    float error = weights->measuring ? 1 : weights->errors ? weights->errors[vertex] : 0;
-    error = field_params_cover(&state->params) ? 0 : error;
+    const float error = weights->errors && !field_params_cover(&state->params) ? weights->errors[vertex] : 0;
     if ((blind && weights_blind_off(weights, vertex)) || (double)error > state->error_limit ||
         (error >= WEIGHTS_SHOWS_NO_DATA && !weights->prepared))
         at->uncertain = FLAG;
