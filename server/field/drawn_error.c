@@ -44,12 +44,6 @@ enum { GROUP = 64, GRAIN = 1024, MAX_PIECES = 96 };
 /* if interpolation errors affect at least this fraction of the area of a level of detail, an error is stored for all vertices
    of the level, even for those without an error of their own */
 #define MARK_ALL 0.75
-/* estimated nanoseconds: to prepare a sensor's weight at a vertex; to look at a triangle; to look for a ridge in a triangle, and to
-   evaluate a sample point, for each sensor */
-#define PREPARE_WORK 2.0
-#define TRIANGLE_WORK 20.0
-#define RIDGE_WORK 30.0
-#define SAMPLE_WORK 20.0
 #define MIN_ERROR 1e-4f /* interpolation errors smaller than this are stored as 0 */
 
 struct triangle_piece {  /* part of a triangle; the error is sampled at the midpoint of the piece's longest side */
@@ -79,11 +73,10 @@ struct sampler { /* working memory of one thread that samples triangles */
 struct drawn_error_job {
     struct weights *weights;
     const struct field_params *params;
-    const uint8_t *usable;
-    uint8_t *members_marked;
+    const uint8_t *usable, *members_marked;
     float radius_m, accepted, error_m;
-    uint32_t *members;
-    double *ones;
+    const uint32_t *members;
+    const double *ones;
     uint32_t first;       /* index of the first triangle whose interpolation error to measure */
     float *errors;        /* interpolation error of each triangle */
     float *ridges;        /* error of values in each triangle where paths from two sides meet; NULL: not measured */
@@ -91,13 +84,6 @@ struct drawn_error_job {
     /* a value that depends on the distance to the nearest sensor alone, which is measured instead of the weights; NULL: the weights
        are measured */
     const struct drawn_near *near;
-    /* --- for jobs that measure the weights of one level of detail in steps */
-    struct field_params own_params; /* *params and *usable belong to the job */
-    uint8_t *own_usable;
-    uint32_t level;
-    bool resolved; /* preparation left no interpolation error, so only the effect of errors of distances is measured */
-    /* next block of vertices to prepare; next primitive of the level, and its next triangle, to measure */
-    size_t next_block, next_primitive, next_triangle;
 };
 
 /* --- weights at points ------------------------------------------------------------------------------------------------------ */
@@ -171,7 +157,7 @@ static void evaluate_corners(struct sampler *sampler)
 static void enqueue(struct sampler *sampler, const struct triangle_piece *piece)
 {
     if (sampler->pieces[piece->tri]++ >= MAX_PIECES) {
-        if (sampler->near && sampler->near->group) /* the rest of the triangle may contain a hot spot's surroundings that no sample sees */
+        if (sampler->near && sampler->near->group) /* no sample may see a hot spot in the rest of the triangle */
             *sampler->errors[piece->tri] = 1;
         return;
     }
@@ -498,17 +484,13 @@ static void measure_some(void *arg, size_t begin, size_t end)
     mem_free(sampler);
 }
 
-/* Prepares the weights of blocks of vertices, and measures the effect of errors of distances there. */
 static void prepare_some(void *arg, size_t begin, size_t end)
 {
-    struct drawn_error_job *job = arg;
-    struct weights *weights = job->weights;
-    for (size_t block = job->first + begin; block < job->first + end; block++) {
+    struct weights *weights = arg;
+    for (size_t block = begin; block < end; block++) {
         size_t at = block * KERNEL_BLOCK, left = weights->layout->vertex_count - at;
         weights_prepare(weights, at, left < KERNEL_BLOCK ? left : KERNEL_BLOCK);
     }
-    if (job->vertex_errors)
-        amplify_some(job, job->first + begin, job->first + end);
 }
 
 /* Returns the largest size of triangles that need no samples, as a fraction of the distance d to the nearest sensor; 0: all
@@ -608,22 +590,52 @@ static void spread(struct weights *weights, const struct drawn_error_job *job, c
     raise_vertices(file, level, errors, least, weights->errors);
 }
 
-/* Measures `count` triangles of a primitive from number `begin` on. */
-static void measure_range(struct drawn_error_job *job, const struct asset_primitive *primitive, size_t begin, size_t count,
-                          struct workers *workers)
-{
-    job->first = primitive->first_index / 3 + (uint32_t)begin;
-    workers_for(workers, count, GRAIN, measure_some, job);
-    if (job->ridges)
-        workers_for(workers, count, GRAIN, measure_ridges, job);
-}
-
-/* Measures the errors of interpolation in the triangles of one level of detail. */
+/* Measures the errors of interpolation, and those at ridges, in the triangles of one level of detail. */
 static void measure_triangles(struct drawn_error_job *job, const struct asset_level *level, struct workers *workers)
 {
     const struct asset_view *file = &job->weights->layout->file->view;
-    for (uint32_t p = level->first_primitive; p < level->first_primitive + level->primitive_count; p++)
-        measure_range(job, &file->primitives[p], 0, file->primitives[p].index_count / 3, workers);
+    for (uint32_t p = level->first_primitive; p < level->first_primitive + level->primitive_count; p++) {
+        job->first = file->primitives[p].first_index / 3;
+        workers_for(workers, file->primitives[p].index_count / 3, GRAIN, measure_some, job);
+        if (job->ridges)
+            workers_for(workers, file->primitives[p].index_count / 3, GRAIN, measure_ridges, job);
+    }
+}
+
+/* Measures all errors of one level of detail. resolved true: preparation left no interpolation error, so only the effect of
+   errors in distances is measured. */
+static void measure_level(struct drawn_error_job *job, const struct asset_level *level, bool resolved, struct workers *workers)
+{
+    struct weights *weights = job->weights;
+    const struct field_layout *layout = weights->layout;
+    size_t members = weights->member_count;
+    uint32_t *numbers = mem_array(members, sizeof(*numbers));
+    uint8_t *unmarked = mem_array(members, 1);
+    double *ones = mem_array(members, sizeof(*ones));
+    for (uint32_t m = 0; m < members; m++) {
+        numbers[m] = m;
+        ones[m] = 1;
+    }
+    job->members = numbers;
+    job->ones = ones;
+    job->members_marked = unmarked;
+    const size_t blocks = (level->vertex_count + KERNEL_BLOCK - 1) / KERNEL_BLOCK;
+    /* preparation cuts triangles at ridges, except for groups whose field is evaluated at each pixel with straight-line distances */
+    if (weights->distance != DISTANCE_EUCLIDEAN && (plant_group_is_exact(layout->group) || layout->trial))
+        job->ridges = mem_try_array(layout->file->view.header->index_count / 3, sizeof(float));
+    if (amplifies_distances(weights))
+        job->vertex_errors = mem_try_array(blocks * KERNEL_BLOCK, sizeof(float));
+    workers_for(workers, blocks, 4, prepare_some, weights);
+    if (job->vertex_errors)
+        workers_for(workers, blocks, 4, amplify_some, job);
+    if (!resolved)
+        measure_triangles(job, level, workers);
+    spread(weights, job, level);
+    mem_free(job->ridges);
+    mem_free(job->vertex_errors);
+    mem_free(numbers);
+    mem_free(unmarked);
+    mem_free(ones);
 }
 
 /* Returns true if the field has the same value everywhere, and data everywhere: it is that of one sensor without a limit of its
@@ -659,122 +671,8 @@ static bool is_as_prepared(const struct weights *weights, const struct field_par
            plant_cuts_for_paper(group, layout->sensor_count);
 }
 
-/* --- measuring in steps --------------------------------------------------------------------------------------------------------- */
-
-static size_t block_count(const struct asset_level *level)
-{
-    return (level->vertex_count + KERNEL_BLOCK - 1) / KERNEL_BLOCK;
-}
-
-static struct drawn_error_job *job_create(struct weights *weights, const struct field_params *params, const uint8_t *usable, uint32_t level,
-                                          bool resolved)
-{
-    const struct field_layout *layout = weights->layout;
-    const size_t members = weights->member_count, triangles = layout->file->view.header->index_count / 3;
-    struct drawn_error_job *job = mem_new(sizeof(*job));
-    job->weights = weights;
-    job->own_params = *params;
-    job->params = &job->own_params;
-    job->own_usable = mem_array(layout->sensor_count, 1);
-    memcpy(job->own_usable, usable, layout->sensor_count);
-    job->usable = job->own_usable;
-    job->radius_m = weights->radius_m;
-    job->accepted = accepted_of(weights);
-    job->level = level;
-    job->error_m = layout->file->view.levels[level].error_m;
-    job->resolved = resolved;
-    job->members = mem_array(members, sizeof(*job->members));
-    job->members_marked = mem_array(members, 1);
-    job->ones = mem_array(members, sizeof(*job->ones));
-    for (uint32_t m = 0; m < members; m++) {
-        job->members[m] = m;
-        job->ones[m] = 1;
-    }
-    job->errors = mem_try_array(triangles, sizeof(float));
-    /* preparation cuts triangles at ridges, except for groups whose field is evaluated at each pixel with straight-line distances */
-    if (weights->distance != DISTANCE_EUCLIDEAN && (plant_group_is_exact(layout->group) || layout->trial))
-        job->ridges = mem_try_array(triangles, sizeof(float));
-    if (amplifies_distances(weights))
-        job->vertex_errors = mem_try_array(block_count(&layout->file->view.levels[level]) * KERNEL_BLOCK, sizeof(float));
-    weights->errors = weights->errors ? weights->errors : mem_try_array(layout->vertex_count, sizeof(float));
-    weights->errors_version++;
-    return job;
-}
-
-void drawn_error_forget(struct drawn_error_job **job_ptr)
-{
-    struct drawn_error_job *job = *job_ptr;
-    if (!job)
-        return;
-    mem_free(job->own_usable);
-    mem_free(job->members);
-    mem_free(job->members_marked);
-    mem_free(job->ones);
-    mem_free(job->errors);
-    mem_free(job->ridges);
-    mem_free(job->vertex_errors);
-    mem_free(job);
-    *job_ptr = NULL;
-}
-
-/* Returns the estimated nanoseconds to measure a triangle. */
-static double work_of(const struct drawn_error_job *job, const uint32_t corners[3])
-{
-    const struct weights *weights = job->weights;
-    const float(*at)[3] = weights->layout->file->view.positions_m;
-    const double members = (double)weights->member_count;
-    float longest_m = 0, near_m = INFINITY;
-    if (is_straight(job, corners))
-        return TRIANGLE_WORK + (job->ridges ? RIDGE_WORK * members : 0);
-    for (int k = 0; k < 3; k++) {
-        longest_m = fmaxf(longest_m, vecf_distance(at[corners[k]], at[corners[(k + 1) % 3]]));
-        near_m = fminf(near_m, weights->near_m[corners[k]]);
-    }
-    /* each halving of all pieces shortens them by a factor of sqrt(2) on average */
-    double halvings = (double)(longest_m / (near_m * STEP * fminf(1, MAX_POWER / weights->power))), pieces = 2 * halvings * halvings;
-    return TRIANGLE_WORK + members * (RIDGE_WORK + SAMPLE_WORK * (4 + (pieces < MAX_PIECES ? pieces : MAX_PIECES)));
-}
-
-/* Measures triangles of the job's level for about `work` nanoseconds, but at least one. Returns what is left of `work`. */
-static double measure_part(struct drawn_error_job *job, const struct asset_level *level, double work, struct workers *workers)
-{
-    const struct asset_view *file = &job->weights->layout->file->view;
-    const struct asset_primitive *primitive = &file->primitives[level->first_primitive + job->next_primitive];
-    const size_t all = primitive->index_count / 3;
-    size_t end = job->next_triangle;
-    for (; end < all && (end == job->next_triangle || work > 0); end++)
-        work -= isinf(work) ? 0 : work_of(job, file->indices + primitive->first_index + 3 * end);
-    measure_range(job, primitive, job->next_triangle, end - job->next_triangle, workers);
-    job->next_triangle = end < all ? end : 0;
-    job->next_primitive += end == all;
-    return work;
-}
-
-/* Continues the measuring of a level for about `work` nanoseconds. Returns true once the level is measured. */
-static bool job_go_on(struct drawn_error_job *job, double work, struct workers *workers)
-{
-    struct weights *weights = job->weights;
-    const struct asset_level *level = &weights->layout->file->view.levels[job->level];
-    const size_t blocks = block_count(level);
-    while (job->next_block < blocks && work > 0) {
-        const double each = PREPARE_WORK * KERNEL_BLOCK * (double)weights->member_count;
-        size_t left = blocks - job->next_block, count = work / each < (double)left ? (size_t)(work / each) + 1 : left;
-        count = count < left ? count : left;
-        job->first = (uint32_t)job->next_block;
-        workers_for(workers, count, 4, prepare_some, job);
-        job->next_block += count;
-        work -= (double)count * each;
-    }
-    while (job->next_block == blocks && !job->resolved && job->next_primitive < level->primitive_count && work > 0)
-        work = measure_part(job, level, work, workers);
-    if (job->next_block < blocks || (!job->resolved && job->next_primitive < level->primitive_count))
-        return false;
-    spread(weights, job, level);
-    return true;
-}
-
-bool drawn_error_measure(struct weights *weights, const struct field_params *params, const uint8_t *usable, size_t vertices, bool in_range,
-                         double work, struct workers *workers)
+void drawn_error_measure(struct weights *weights, const struct field_params *params, const uint8_t *usable, size_t vertices, bool in_range,
+                         struct workers *workers)
 {
     const struct field_layout *layout = weights->layout;
     const struct asset_view *file = &layout->file->view;
@@ -784,23 +682,25 @@ bool drawn_error_measure(struct weights *weights, const struct field_params *par
     uint64_t bit = (uint64_t)1 << (number < 63 ? number : 63);
     /* measures nothing if each pixel evaluates the field, because frames then do not interpolate within triangles */
     if (layout_is_exact(layout, weights->interpolation, weights->distance))
-        return true;
-    if (!weights->measuring &&
-        (weights->measured_levels & bit || weights->prepared || layout->assumed || weights->member_count == 0 || is_constant(weights)))
-        return true;
+        return;
+    if (weights->measured_levels & bit || weights->prepared || layout->assumed || weights->member_count == 0 || is_constant(weights))
+        return;
     const bool resolved = layout->file->resolved_levels & bit && in_range && is_as_prepared(weights, params);
-    if (!weights->measuring && resolved && !amplifies_distances(weights))
-        return true;
-    if (!weights->measuring)
-        weights->measuring = job_create(weights, params, usable, number, resolved);
-    if (weights->measuring->errors && weights->errors && !job_go_on(weights->measuring, work, workers))
-        return false;
-    const uint32_t measured = weights->measuring->level;
-    weights->measured_levels |= (uint64_t)1 << (measured < 63 ? measured : 63);
+    if (resolved && !amplifies_distances(weights))
+        return;
+    weights->measured_levels |= bit;
+    struct drawn_error_job job = { .weights = weights,
+                                   .params = params,
+                                   .usable = usable,
+                                   .radius_m = weights->radius_m,
+                                   .accepted = accepted_of(weights),
+                                   .error_m = file->levels[number].error_m,
+                                   .errors = mem_try_array(file->header->index_count / 3, sizeof(float)) };
+    weights->errors = weights->errors ? weights->errors : mem_try_array(layout->vertex_count, sizeof(float));
     weights->errors_version++;
-    drawn_error_forget(&weights->measuring);
-    /* another caller may have begun the job, for another level of detail */
-    return measured == number || drawn_error_measure(weights, params, usable, vertices, in_range, work, workers);
+    if (job.errors && weights->errors)
+        measure_level(&job, &file->levels[number], resolved, workers);
+    mem_free(job.errors);
 }
 
 void drawn_error_mark(struct weights *weights, const struct field_params *params, const uint8_t *usable, const struct drawn_near *near,
@@ -818,7 +718,7 @@ void drawn_error_mark(struct weights *weights, const struct field_params *params
         memset(marks, 1, weights->layout->vertex_count);
         return;
     }
-    workers_for(workers, blocks, 4, prepare_some, &job);
+    workers_for(workers, blocks, 4, prepare_some, weights);
     for (uint32_t l = 0; l < file->header->level_count; l++) {
         job.error_m = file->levels[l].error_m;
         measure_triangles(&job, &file->levels[l], workers);

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Error of the drawn field: how far values interpolated between a triangle's corners may be from the field inside it. With
    geodesic distances, errors of the distances count, too: for high powers of shepard, and in triangles where paths from two sides
-   meet (at ridges). Preparation subdivides triangles until the
-   error is below one colour step for the plant file's parameters. But it may reach its limit of triangles, and a view may use
-   other parameters. So the error is measured for the parameters in use. Call from one thread only. */
+   meet (at ridges). Preparation subdivides triangles until the error is below one colour step for the plant file's parameters. But
+   it may reach its limit of triangles, and a view may use other parameters. So the error is measured for the parameters in use.
+   Call from one thread only. */
 #ifndef FIELD_DRAWN_ERROR_H
 #define FIELD_DRAWN_ERROR_H
 #include "base/workers.h"
@@ -13,14 +13,10 @@
    level of detail that uses the first `vertices` vertices, and merges the result into weights->errors: for each vertex, the
    largest error of the adjacent triangles. The unit is the spread of the readings for shepard, and the largest reading for
    paper. params and usable are those of weights_create(). in_range: the readings differ by no more than preparation assumed.
-   Measures for about `work` nanoseconds of one core (INFINITY: until all is done), and returns true once the level is measured.
-   Until then, weights->measuring is set, and the errors are unknown: call again. Does nothing if each pixel evaluates the field
-   (plant/exact.h), if preparation left no error for these parameters and all sensors are used, if the weights are prepared (then
-   linear within triangles by definition), or when out of memory. */
-bool drawn_error_measure(struct weights *weights, const struct field_params *params, const uint8_t *usable, size_t vertices, bool in_range,
-                         double work, struct workers *workers);
-/* Frees an unfinished measurement (weights->measuring). Accepts a pointer to NULL; sets the pointer to NULL. */
-void drawn_error_forget(struct drawn_error_job **job);
+   Does nothing if each pixel evaluates the field (plant/exact.h), if preparation left no error for these parameters and all
+   sensors are used, if the weights are prepared (then linear within triangles by definition), or when out of memory. */
+void drawn_error_measure(struct weights *weights, const struct field_params *params, const uint8_t *usable, size_t vertices, bool in_range,
+                         struct workers *workers);
 /* A value that depends on the distance to the nearest used sensor alone: SHOW_BLIND and SHOW_DISTANCE. */
 struct drawn_near {
     const struct plant_group *group; /* SHOW_BLIND: group of the sensors; NULL: SHOW_DISTANCE */

@@ -252,7 +252,7 @@ bool field_begin_update(struct field *field, struct field_state *state, const st
     if (state->params.show == SHOW_BLIND)
         mark_blind(field, state);
     if (!field_params_cover(&state->params))
-        drawn_error_measure(weights, &state->params, state->usable, count, update_is_in_range(state), (double)INFINITY, field->workers);
+        drawn_error_measure(weights, &state->params, state->usable, count, update_is_in_range(state), field->workers);
     uint64_t previous = weights->used;
     weights->used = field->tick;
     if (!state_is_behind(state) && state->scalars.ready >= count)

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The cache of computed fields (states) and of sensors' weights, with its eviction. */
-#include "field/drawn_error.h"
 #include "field/field_impl.h"
 #include "field/update.h"
 
@@ -23,7 +22,6 @@ static void weights_remove(struct field *field, struct weights **link)
     if (weights->columns)
         columns_drop(field, weights);
     field->bytes -= weights_bytes(weights->layout);
-    drawn_error_forget(&weights->measuring);
     weights_destroy(&weights);
 }
 

@@ -3,7 +3,6 @@
    sensor's weights, which follow from the sensor's distances. */
 #include "field/weights.h"
 
-#include <assert.h>
 #include <math.h>
 #include <string.h>
 #define XXH_INLINE_ALL
@@ -270,7 +269,6 @@ void weights_destroy(struct weights **weights_ptr)
     struct weights *weights = *weights_ptr;
     if (!weights)
         return;
-    assert(!weights->measuring);
     weights_key_finish(&weights->key);
     mem_free(weights->strength);
     mem_free(weights->decay);

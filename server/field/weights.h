@@ -89,7 +89,6 @@ struct weights {
     /* [vertex]: largest error of linear interpolation within the adjacent triangles, or WEIGHTS_SHOWS_NO_DATA; unit and method in
        drawn_error.h; NULL: not measured */
     float *errors;
-    struct drawn_error_job *measuring; /* unfinished measurement of `errors`, which are unknown until it ends; NULL: none */
     float *interpolation_errors; /* `errors` without the part due to errors of distances; NULL: `errors` has no such part */
     /* [vertex]: 1: a triangle at the vertex shows SHOW_BLIND with a larger error than drawn_error_mark() accepts; NULL: not measured */
     uint8_t *blind_marks;
@@ -128,8 +127,7 @@ struct weights *weights_create(const struct field_layout *layout, const struct f
 /* Copies from other weights those computed arrays that are the same for both sets of parameters. While a user drags one
    parameter, these are most of the arrays. */
 void weights_copy_known(struct weights *weights, const struct weights *from);
-/* Frees the weights, whose errors are not being measured (drawn_error_forget()). Accepts a pointer to NULL; sets the pointer to
-   NULL. */
+/* Frees the weights. Accepts a pointer to NULL; sets the pointer to NULL. */
 void weights_destroy(struct weights **weights);
 /* Returns the size in bytes of the weights for this layout (sensors of a group on an asset), without cached columns (each
    sensor's weights at all vertices). */

@@ -22,7 +22,7 @@ struct kept_answers {
     struct session *gone; /* sessions whose client has gone, kept until it is known whether their actions reached the disk */
 };
 
-/* The readings that sessions show, and how far they can be trusted. */
+/* The readings that sessions show, and the state of their sources and of the clock. */
 struct session_readings {
     const struct snapshot *snapshot; /* the newest readings */
     int64_t history_first_us;        /* UTC microseconds at which recorded history begins; 0: nothing is recorded yet */
@@ -33,7 +33,7 @@ struct session_readings {
     struct clock_state clock; /* state of the wall clock: whether it is set, and its estimated error */
 };
 
-/* How clients prove who they are. */
+/* The ways in which clients prove their identity. */
 struct session_sign_in {
     const struct tokens *tokens;           /* NULL: none are configured */
     struct openid *openid;                 /* service for signing in with OpenID Connect; NULL: off */
@@ -52,7 +52,7 @@ struct session_core {
     bool up; /* true: the core sends readings */
 };
 
-/* How busy the daemon is. */
+/* The load of the daemon. */
 struct session_load {
     /* monotonic time until which a session's camera counts as moving; refined frames of other sessions wait until then, because
        they would make that session's pictures stutter */

@@ -406,8 +406,11 @@ static void show(const char *name, const struct along_tally *tally)
                   tally->drawn_marked, tally->drawn_bare, tally->worst_drawn / STEP);
 }
 
-static void compare_prepared(struct prep_case *c, const struct along_shape *shapes, const char *distance)
+static void compare_prepared(struct prep_case *c, const char *distance)
 {
+    struct along_shape shapes[SHAPES] = { 0 };
+    chance.state = sweep_seed();
+    make_shapes(shapes);
     struct plant *plant = prepare(shapes, c, distance);
     struct log *log = test_log();
     struct workers *workers = test_workers(1);
@@ -443,6 +446,8 @@ static void compare_prepared(struct prep_case *c, const struct along_shape *shap
     field_destroy(&field);
     scene_destroy(&scene);
     plant_destroy(&plant);
+    for (int i = 0; i < SHAPES; i++)
+        cad_finish(&shapes[i].cad);
     /* the limits of server/render/ACCURACY.md: errors of distances are not marked for these powers */
     assert_true(all.picks_bare <= MOST_BARE * all.places && all.drawn_bare <= MOST_BARE * all.places);
     assert_true(all.worst_pick <= 2.5 * STEP && all.worst_drawn <= 2.5 * STEP);
@@ -450,20 +455,10 @@ static void compare_prepared(struct prep_case *c, const struct along_shape *shap
 
 TEST_WITH(test_prepared_along_surfaces, prep_case_set_up, prep_case_tear_down)
 {
-    struct along_shape shapes[SHAPES] = { 0 };
-    chance.state = sweep_seed();
-    make_shapes(shapes);
-    compare_prepared(*state, shapes, "geodesic");
-    for (int i = 0; i < SHAPES; i++)
-        cad_finish(&shapes[i].cad);
+    compare_prepared(*state, "geodesic");
 }
 
 TEST_WITH(test_prepared_for_straight_lines, prep_case_set_up, prep_case_tear_down)
 {
-    struct along_shape shapes[SHAPES] = { 0 };
-    chance.state = sweep_seed();
-    make_shapes(shapes);
-    compare_prepared(*state, shapes, "euclidean");
-    for (int i = 0; i < SHAPES; i++)
-        cad_finish(&shapes[i].cad);
+    compare_prepared(*state, "euclidean");
 }
