@@ -50,7 +50,7 @@ struct tile_wall {
        were told to show */
     uint64_t asked, presented;
     /* size of the wall's picture, adapted to how long the server takes to draw and encode the picture */
-    struct quality_ladder made;
+    struct picture_size made;
 };
 
 enum { UPGRADE_REFUSALS = 16 };

@@ -364,7 +364,7 @@ bool session_wants(const struct session *session, int64_t now_ns, struct frame_r
 void session_requested(struct session *session, const struct frame_request *request, bool replaced)
 {
     if (!replaced)
-        pacer_asked(&session->delivery.pacer);
+        pacer_asked(&session->delivery.pacer, request->asked_ns);
     session->demand.refining = request->urgency == URGENCY_REFINE || (session->demand.refining && session->delivery.pacer.asked > 1);
     session->delivery.pacer.ladder.reprojects = request->depth;
     session->demand.input = session->demand.any = session->demand.data = session->tile.moved = false;

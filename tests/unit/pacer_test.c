@@ -19,7 +19,7 @@ static struct pacer fresh(void)
 static uint32_t send_one(struct pacer *pacer, size_t bytes, int64_t now_ns)
 {
     struct pacer_note note = { .moving = true, .step = pacer->ladder.step };
-    pacer_asked(pacer);
+    pacer_asked(pacer, now_ns);
     uint32_t seq = pacer_sent(pacer, bytes, &note, now_ns);
     pacer_wrote(pacer, true, now_ns);
     return seq;
@@ -42,7 +42,7 @@ TEST(what_is_asked_for_counts)
 {
     struct pacer pacer = fresh();
     for (int i = 0; i < PACER_LEAST; i++)
-        pacer_asked(&pacer);
+        pacer_asked(&pacer, 0);
     assert_false(pacer_may_ask(&pacer, 0));
     pacer_dropped(&pacer);
     assert_true(pacer_may_ask(&pacer, 0));
@@ -52,7 +52,7 @@ TEST(nothing_is_asked_for_while_the_socket_is_full)
 {
     struct pacer pacer = fresh();
     struct pacer_note note = { 0 };
-    pacer_asked(&pacer);
+    pacer_asked(&pacer, 0);
     pacer_sent(&pacer, 1000, &note, MS);
     assert_false(pacer_may_ask(&pacer, 2 * MS));
     pacer_wrote(&pacer, false, 3 * MS);
@@ -66,7 +66,7 @@ TEST(a_picture_cut_short_is_not_waited_for)
 {
     struct pacer pacer = fresh();
     struct pacer_note note = { 0 };
-    pacer_asked(&pacer);
+    pacer_asked(&pacer, 0);
     pacer_sent(&pacer, 1000, &note, MS);
     pacer_gave_up(&pacer);
     /* the frame was given up while being sent: no other one may be requested before its remaining bytes are gone */
@@ -223,7 +223,7 @@ TEST(a_slow_network_gets_small_pictures_in_time)
     run_world(&world, &pacer, 60);
     assert_true(world.oldest_ns < 600 * MS);
     assert_true(rate(&world) > 3);
-    assert_true(pacer.ladder.size == 0); /* the network, not the decoder, is slow, so frames keep their full number of pixels */
+    assert_true(pacer.ladder.decoded.index == 0); /* the network, not the decoder, is slow, so frames keep their full number of pixels */
 }
 
 /* A client that reprojects (moves the last picture until the next arrives) needs fewer pictures, so it gets fewer and better
@@ -254,7 +254,7 @@ TEST(a_slow_decoder_gets_fewer_pixels)
     run_world(&world, &pacer, 10);
     measure(&world);
     run_world(&world, &pacer, 20);
-    assert_true(pacer.ladder.size >= 2 && pacer.ladder.step == 0);
+    assert_true(pacer.ladder.decoded.index >= 2 && pacer.ladder.step == 0);
     assert_true(rate(&world) > 12 && world.oldest_ns < 200 * MS);
 }
 
@@ -294,9 +294,9 @@ TEST(a_client_that_is_busy_for_a_moment_keeps_its_quality)
     world.now_ns += 12 * NS_PER_S;
     for (int i = 0; i < 3; i++) { /* the first move */
         run_busy(&world, &pacer, 600 * MS, 0.7);
-        assert_true(pacer.ladder.step == 0 && pacer.ladder.size == 0);
+        assert_true(pacer.ladder.step == 0 && pacer.ladder.decoded.index == 0);
         run_world(&world, &pacer, 0.3);
-        assert_true(pacer.ladder.step == 0 && pacer.ladder.size == 0);
+        assert_true(pacer.ladder.step == 0 && pacer.ladder.decoded.index == 0);
     }
 }
 
@@ -314,7 +314,7 @@ TEST(a_decoder_that_begins_is_not_slow)
     world.decode_ns = 8 * MS;
     for (int i = 0; i < 30; i++) {
         run_world(&world, &pacer, 0.1);
-        assert_true(pacer.ladder.step == 0 && pacer.ladder.size == 0);
+        assert_true(pacer.ladder.step == 0 && pacer.ladder.decoded.index == 0);
     }
 }
 

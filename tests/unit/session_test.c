@@ -1104,6 +1104,12 @@ CASE(a_follower_is_shown_its_leaders_view)
     assert_int_equal(request.view.camera_seq, 1);
     following = hear(f);
     assert_string_equal(json_string_value(json_object_get(following, "group")), "pressure");
+    leader->delivery.pacer.ladder.made.index = 2; /* a loaded server: both get the view in the same smaller size */
+    session_choose_step(f->session);
+    session_on_leader(f->session, f->now_ns);
+    assert_int_equal(show(f).view.width_px, 400);
+    leader->delivery.pacer.ladder.made.index = 0;
+    session_choose_step(f->session);
     say(f, "{\"type\":\"resize\",\"width\":320,\"height\":200}");
     assert_int_equal(show(f).view.width_px, 800);
     say(f, "{\"type\":\"follow\",\"session\":null}");

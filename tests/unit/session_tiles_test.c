@@ -220,28 +220,3 @@ TEST(test_a_move_is_sent_once)
     assert_false(first->tile.moved || first->demand.data);
     tear_down(&wall);
 }
-
-/* Reports one frame every 50 ms, each of which took made_ms to draw. Returns the size step chosen afterwards (0: full size;
-   larger steps are smaller pictures). */
-static int size_after(struct quality_ladder *ladder, int64_t made_ms, int64_t from_ms, int64_t to_ms)
-{
-    for (int64_t ms = from_ms; ms <= to_ms; ms += 50)
-        quality_ladder_on_made(ladder, made_ms * NS_PER_MS, ms * NS_PER_MS);
-    return ladder->size;
-}
-
-TEST(test_a_server_that_takes_long_makes_smaller_pictures)
-{
-    struct quality_ladder ladder = { 0 };
-    assert_int_equal(size_after(&ladder, 120, 1000, 9000), 0); /* pictures are made fast enough */
-    assert_int_equal(size_after(&ladder, 220, 10000, 10400), 0);
-    /* frames took 220 ms for half a second, which is too long: the next smaller size */
-    assert_int_equal(size_after(&ladder, 220, 10450, 10600), 1);
-    /* 125 ms at this size: short enough to stay, but too long to try the larger size */
-    assert_int_equal(size_after(&ladder, 125, 11000, 19000), 1);
-    /* 60 ms at this size would be 107 ms at the larger one, so the size stays */
-    assert_int_equal(size_after(&ladder, 60, 20000, 29000), 1);
-    assert_int_equal(size_after(&ladder, 40, 30000, 32900), 1);
-    assert_int_equal(size_after(&ladder, 40, 32950, 33100), 0);
-    assert_int_equal(size_after(&ladder, 900, 40000, 60000), QUALITY_LADDER_SIZES - 1);
-}

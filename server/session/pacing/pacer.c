@@ -61,9 +61,11 @@ bool pacer_may_ask(const struct pacer *pacer, int64_t now_ns)
     return fits_window(pacer);
 }
 
-void pacer_asked(struct pacer *pacer)
+void pacer_asked(struct pacer *pacer, int64_t now_ns)
 {
     assert(pacer->asked + pacer->flight_count < PACER_MOST);
+    if (pacer->asked == 0)
+        pacer->owed_since_ns = now_ns;
     pacer->asked++;
 }
 
@@ -71,12 +73,22 @@ void pacer_dropped(struct pacer *pacer)
 {
     assert(pacer->asked > 0);
     pacer->asked--;
+    pacer->owed_since_ns = 0;
+}
+
+/* Tells the quality ladder how long the server took to make a preview. */
+static void measure_making(struct pacer *pacer, const struct pacer_note *note, int64_t now_ns)
+{
+    if (note->moving && !note->of_data && pacer->owed_since_ns && note->made_ns > pacer->owed_since_ns)
+        quality_ladder_on_made(&pacer->ladder, note->made_ns - pacer->owed_since_ns, now_ns);
+    pacer->owed_since_ns = note->made_ns;
 }
 
 uint32_t pacer_sent(struct pacer *pacer, size_t bytes, const struct pacer_note *note, int64_t now_ns)
 {
     assert(pacer->asked > 0 && pacer->flight_count < PACER_MOST);
     pacer->asked--;
+    measure_making(pacer, note, now_ns);
     pacer->last_seq = pacer->last_seq == UINT32_MAX ? 1 : pacer->last_seq + 1;
     pacer->moved_on_ns = now_ns;
     pacer->flight[pacer->flight_count++] =

@@ -31,6 +31,9 @@ struct pacer_flight {
 
 struct pacer {                              /* limits the frames under way to one client; initialise with pacer_init() */
     int asked;                              /* number of frames requested from the render service for the client and not sent yet */
+    /* monotonic time since which the render service has owed the client a frame: of the client's last frame, or of the request
+       if that came later; 0: not known */
+    int64_t owed_since_ns;
     struct pacer_flight flight[PACER_MOST]; /* frames sent and not acknowledged, oldest first */
     int flight_count;
     uint32_t last_seq;
@@ -51,7 +54,7 @@ void pacer_init(struct pacer *pacer);
 /* Returns whether another frame may be requested for the client now. */
 bool pacer_may_ask(const struct pacer *pacer, int64_t now_ns);
 /* Counts a frame that was requested. */
-void pacer_asked(struct pacer *pacer);
+void pacer_asked(struct pacer *pacer, int64_t now_ns);
 /* Counts a requested frame that will not be sent: the render service does not deliver it, or the session drops it. */
 void pacer_dropped(struct pacer *pacer);
 /* Counts a frame whose first byte is being sent. Returns the frame's sequence number in the session. */

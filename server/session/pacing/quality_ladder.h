@@ -6,9 +6,13 @@
 #ifndef SESSION_PACING_QUALITY_LADDER_H
 #define SESSION_PACING_QUALITY_LADDER_H
 #include "session/pacing/channel.h"
+#include "session/pacing/picture_size.h"
 
-enum { QUALITY_LADDER_STEPS = 9, QUALITY_LADDER_FIRST = 3 /* index of the initial step, used until the client's bandwidth is
-                                                             known */, QUALITY_LADDER_SIZES = 4 };
+enum {
+    QUALITY_LADDER_STEPS = 9,
+    QUALITY_LADDER_FIRST = 3 /* index of the initial step, used until the client's bandwidth is
+                                                             known */
+};
 
 struct rung {
     int quality;
@@ -17,13 +21,15 @@ struct rung {
 
 struct quality_ladder { /* chooses the quality and size of one client's frames; initialise with quality_ladder_init() */
     int step;           /* index of the quality step, 0: best; depends on the bandwidth */
-    int size;           /* index of the picture size, 0: full; depends on the client's decoding time and the server's rendering time */
+    /* Picture sizes, of which the smaller one counts. decoded: depends on the client's decoding time; made: on the time that the
+       server takes for one picture of this client while it serves the others, too. */
+    struct picture_size decoded, made;
+    double made_ns;     /* time that the server takes for one picture, smoothed */
+    int64_t made_at_ns; /* monotonic time when made_ns was measured last; 0: never */
     double unit_bytes;  /* estimated size in bytes of a frame of the best quality (step 0), smoothed */
     bool reprojects;    /* true: the client reprojects its newest picture to the present camera, so fewer and better frames suffice */
     bool known;         /* true: at least one frame was acknowledged, so unit_bytes is measured */
-    /* monotonic time since which a condition has held; 0: it does not hold now. good_since_ns: the network can carry a better
-       step; easy_since_ns: client and server can handle a larger picture; bad_since_ns: decoding takes too long */
-    int64_t good_since_ns, easy_since_ns, bad_since_ns;
+    int64_t good_since_ns;  /* monotonic time since which the network could carry a better step; 0: it cannot now */
     int64_t up_ns, down_ns; /* up_ns: monotonic time of the ladder's last step up; down_ns: of its last step down */
     /* nanoseconds for which the conditions for a step up must hold before the ladder takes the step; doubles if the last step
        up did not hold */
@@ -47,9 +53,9 @@ int quality_ladder_common(const struct quality_ladder *seen, const int counts[QU
 int quality_ladder_step(const struct quality_ladder *ladder, int common);
 /* Records that the client acknowledged a preview of that quality step and size in bytes, and adjusts the ladder's step. */
 void quality_ladder_on_ack(struct quality_ladder *ladder, const struct channel *channel, int step, size_t bytes, int64_t now_ns);
-/* Records how long the server took to make previews, from request to encoded frame, and adjusts the picture size. Used for the
-   ladder of a picture over many displays: it has more pixels than any client's picture, so making it may be the bottleneck. */
-void quality_ladder_on_made(struct quality_ladder *ladder, int64_t made_ns, int64_t now_ns);
+/* Records that the server took took_ns to make a preview, and adjusts the picture size. This is the time since it began to owe
+   the client a preview: since the client's last one, or since the request if that came later. */
+void quality_ladder_on_made(struct quality_ladder *ladder, int64_t took_ns, int64_t now_ns);
 /* Returns the expected size in bytes of a preview at the ladder's own step; 0: not known. */
 double quality_ladder_bytes(const struct quality_ladder *ladder);
 

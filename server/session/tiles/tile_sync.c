@@ -8,6 +8,9 @@
 /* Nanoseconds. All tiles of a wall show a picture at one instant: the slowest client's round trip plus FLIP_NS, but at most
    MAX_FLIP_NS, after the server has told the clients to show it. */
 static const int64_t FLIP_NS = 25 * NS_PER_MS, MAX_FLIP_NS = NS_PER_S;
+/* Time in nanoseconds for making a picture above which the wall's pictures get smaller. The server makes two pictures at a time,
+   so this is the limit for 15 pictures a second. */
+static const int64_t SLOW_MADE_NS = 130 * NS_PER_MS, FAST_MADE_NS = 90 * NS_PER_MS;
 
 bool session_tile_takes_part(const struct session *session, int64_t now_ns)
 {
@@ -34,9 +37,9 @@ static struct rung worst_rung(const struct session_tiles *tiles, int *step)
     for (size_t i = 1; i < tiles->count; i++) {
         const struct quality_ladder *ladder = &tiles->members[i]->delivery.pacer.ladder;
         worst.step = ladder->step > worst.step ? ladder->step : worst.step;
-        worst.size = ladder->size > worst.size ? ladder->size : worst.size;
+        worst.decoded.index = ladder->decoded.index > worst.decoded.index ? ladder->decoded.index : worst.decoded.index;
     }
-    worst.size = tiles->made->size > worst.size ? tiles->made->size : worst.size;
+    worst.made = *tiles->made;
     *step = worst.step;
     return quality_ladder_rung(&worst, worst.step);
 }
@@ -48,9 +51,10 @@ static void follow_server(const struct session_tiles *tiles, bool moving, int64_
     for (size_t i = 0; i < tiles->count; i++)
         made_ns = tiles->members[i]->tile.made_ns > made_ns ? tiles->members[i]->tile.made_ns : made_ns;
     if (moving && made_ns)
-        quality_ladder_on_made(tiles->made, made_ns, now_ns);
+        picture_size_follow(tiles->made, &(struct picture_cost){ .cost_ns = made_ns, .hard_ns = SLOW_MADE_NS, .easy_ns = FAST_MADE_NS },
+                            now_ns);
     else
-        tiles->made->bad_since_ns = tiles->made->easy_since_ns = 0;
+        picture_size_pause(tiles->made);
 }
 
 bool session_tiles_next_request(const struct session_tiles *tiles, uint64_t number, int64_t now_ns, struct frame_request requests[])

@@ -15,9 +15,7 @@ struct session_tiles { /* tiles that take part in a wall's picture (neither drop
     struct session *const *members;
     size_t count;
     const struct session *leader;
-    /* quality ladder (choice of quality and size) of the wall's picture; the size depends on how long the server takes to make
-       pictures */
-    struct quality_ladder *made;
+    struct picture_size *made; /* size of the wall's picture; depends on how long the server takes to make the pictures */
 };
 
 /* If a member wants a new picture of the wall, and one may be requested now (or may replace one in flight), fills requests[]

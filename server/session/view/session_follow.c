@@ -144,4 +144,5 @@ void session_choose_step(struct session *session)
 {
     const struct frame_delivery *delivery = &seen(session)->delivery;
     session->delivery.common_step = quality_ladder_common(&delivery->pacer.ladder, delivery->steps);
+    session->delivery.pacer.ladder.made = delivery->pacer.ladder.made; /* otherwise a view would be drawn in several sizes */
 }
