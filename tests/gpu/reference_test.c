@@ -12,7 +12,7 @@
 #include "tests/support/site.h"
 #include "tests/support/synthetic.h"
 
-/* Size of the pictures. The default run draws a quarter of the pixels of a long run, but compares as many of them. */
+/* Size of the pictures. The default run draws a sixteenth of the pixels of a long run, but compares as many of them. */
 static int width_px, height_px;
 enum { VIEWS = 14, SAMPLES = 715 }; /* VIEWS: number of views per case; SAMPLES: number of samples per view */
 enum { CLOSE_PX = 32 };             /* samples along each side of the close-up of a pixel, which is two pixels wide */
@@ -99,7 +99,7 @@ static double error_within_a_pixel(struct site *site, const struct pixels_seen *
 
 static void compare(struct site *site, const struct pixels_seen *seen, size_t samples, int camera, struct reference_tally *tally)
 {
-    for (size_t i = 0, tries = 0; i < samples && tries < 100 * samples; tries++) {
+    for (size_t i = 0, tries = 0; i < samples && tries < 200 * samples; tries++) {
         size_t at = (size_t)(synthetic_random_unit(&site->random) * width_px * height_px);
         if (!has_value(seen->shown[at]))
             continue;
@@ -329,7 +329,7 @@ TEST(test_cookie_line)
 
 int main(void)
 {
-    width_px = sweep(640, 320);
-    height_px = sweep(360, 180);
+    width_px = sweep(640, 160);
+    height_px = sweep(360, 90);
     return rig_run(&rig);
 }
