@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { test } from 'node:test';
 import { DESKTOP, openPage, readPng, SCREENSHOTS, SHOOTS, waitForHealth, waitForPicture, withPage } from './support/browser.mjs';
-import { aimAt, enterVr, EYE, eyesPng, headsetScript, IPD_M, lookFrom, pull, SCREEN, seen } from './support/headset.mjs';
+import { aimAt, enterVr, EYE, eyesPng, headsetScript, IPD_M, lookFrom, pull, SCREEN, seen, SMALL } from './support/headset.mjs';
 import { setUp } from './support/set_up.mjs';
 import { notBuilt, TinyPlant } from './support/tiny_plant.mjs';
 import { until } from './support/until.mjs';
@@ -21,8 +21,8 @@ setUp(options.skip, async (own) => {
 });
 
 // expected: a script error that the emulator itself causes.
-async function withHeadset(f, at = plant, expected = null) {
-    const { page, errors, close } = await openPage(`http://127.0.0.1:${at.port}/?lang=en`, SCREEN, headsetScript());
+async function withHeadset(f, { at = plant, expected = null, screen = SMALL } = {}) {
+    const { page, errors, close } = await openPage(`http://127.0.0.1:${at.port}/?lang=en`, screen, headsetScript());
     try {
         await waitForPicture(page);
         await waitForHealth(page, 'live');
@@ -54,7 +54,7 @@ test('the VR button is shown only if there is a headset and the server sends dep
     await withHeadset(async (other) => {
         await other.locator('#enter-vr').waitFor({ state: 'attached' });
         assert.equal(await other.locator('#enter-vr').isVisible(), false);
-    }, flat);
+    }, { at: flat });
 });
 
 // Returns the server's snapshot from the position of an eye, which serves as the reference.
@@ -77,7 +77,7 @@ test('each eye sees the plant from its own position; a turned head shows the cha
     options, (t) => withHeadset(async (page) => {
     const home = await page.evaluate(() => ({ camera: globalThis.plantcast.session.camera, size: globalThis.plantcast.session.size }));
     await page.evaluate(() => globalThis.plantcast.session.setParams({ look: 'flat', hidden: ['P-101A'] }));
-    await enterVr(page);
+    await enterVr(page, (button) => button.click());
     for (const away of [2, 20]) {
         const eye = [0, -0.5 - away, 0]; // the eye is 2 or 20 m in front of the box's side, which is at y = -0.5
         await lookFrom(page, eye, [0, 1, 0]);
@@ -109,7 +109,7 @@ test('each eye sees the plant from its own position; a turned head shows the cha
             session.picture.cameraSeq === session.cameraSeq && session.camera.eye.every((m, i) => m === camera.eye[i]);
     }, home);
     assert.equal(await page.locator('#enter-vr').isEnabled(), true);
-}));
+}, { screen: SCREEN }));
 
 test('hands can teleport on the floor, select equipment, read a sensor, use the wrist panel and grip',
     options, () => withHeadset(async (page) => {
@@ -216,4 +216,4 @@ test('a lost connection covers the headset view until the server is back; a lost
     });
     await hasEnded(page);
     await page.waitForFunction(() => !Object.hasOwn(globalThis.plantcast.viewport, 'invalidate'));
-}, plant, /null \(reading '0'\)/)); // expected error: the emulator reads a state of the lost WebGL context
+}, { expected: /null \(reading '0'\)/ })); // expected error: the emulator reads a state of the lost WebGL context
