@@ -7,7 +7,7 @@ import { arrive, markers, PHONE, resize, settle, SHARP, shoot, TABLET, view, wai
     withPage } from '../support/browser.mjs';
 import { contrastRatio } from '../support/pixels.mjs';
 import { missing } from '../support/plant.mjs';
-import { sweep } from '../support/sweep.mjs';
+import { sweep, takes } from '../support/sweep.mjs';
 import { becomes, until } from '../support/until.mjs';
 
 const why = missing();
@@ -413,10 +413,10 @@ const ask = (page, name) => page.evaluate((f) => {
 }, name);
 
 test('phones: the button of a list that a card or a trend covers shows the list again', options, () => onScreen(PHONE, async (page) => {
-    for (const [width, height] of PHONES) {
+    for (const [row, [width, height]] of PHONES.entries()) {
         await page.setViewportSize({ width, height });
-        for (const [button, list] of [['#alarm-strip', '#alarms'], ['#assets-toggle', '#assets']])
-            for (const [call, cover] of [['selectTag', '#card'], ['showTrend', '#trends']]) {
+        for (const [i, [button, list]] of [['#alarm-strip', '#alarms'], ['#assets-toggle', '#assets']].entries())
+            for (const [call, cover] of [['selectTag', '#card'], ['showTrend', '#trends']].filter((_, j) => takes(row, i + j, 2))) {
                 await page.locator(button).tap();
                 await visible(page, list);
                 await ask(page, call);
