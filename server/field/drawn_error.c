@@ -4,10 +4,12 @@
 #include "field/drawn_error.h"
 
 #include <math.h>
+#include <stdatomic.h>
 #include <string.h>
 
 #include "base/math/vec.h"
 #include "base/mem.h"
+#include "field/ridges.h"
 #include "field/update.h"
 #include "plant/exact.h"
 #include "plant/influence.h"
@@ -16,6 +18,10 @@
 /* GROUP: number of triangles evaluated together. GRAIN: number of triangles per job of a worker thread. MAX_PIECES: maximum
    number of pieces into which one triangle is split by repeated halving. */
 enum { GROUP = 64, GRAIN = 1024, MAX_PIECES = 96 };
+/* MOST_SAMPLES: number of samples taken in one level of detail, multiplied by the number of sensors. They take two cores about
+   0.15 s; all those of a part of 50,000 long triangles with 512 sensors would take 10 s. LEAST_SAMPLES: number of samples that are
+   taken in any case. MARGIN: factor by which the error of a triangle without samples may exceed the largest of the others. */
+enum { MOST_SAMPLES = 10000000, LEAST_SAMPLES = 5000, MARGIN = 2 };
 /* largest length of a piece (part of a triangle), relative to its distance to the nearest sensor; longer pieces are halved */
 #define STEP 0.3f
 /* exponent of the distance in the interpolation shepard (inverse distance weighting) up to which pieces of the length STEP are
@@ -28,13 +34,6 @@ enum { GROUP = 64, GRAIN = 1024, MAX_PIECES = 96 };
    distance to the nearest sensor and of the radius R */
 #define PAPER_ACCEPTED 0.015f
 #define STEP_OF_COLOR (1 / 255.0f)
-/* Bound on the error of a distance inside a triangle in which paths from two sides meet: this fraction of the triangle's longest
-   side times the sine of half of the angle between the paths. With 0.2, it was exceeded at 3 of 48,600 random places of
-   along_truth_test, with 0.1 at 8, with 0.3 at none. */
-#define RIDGE_PART 0.3f
-/* relative error of stored distances that does not count as a ridge: rounding, and differences between the errors of neighbouring
-   vertices. Marking another 1.5 % of the places with 5e-4 finds no other error. */
-#define ROUNDING 2e-3f
 /* largest accepted error of SHOW_BLIND, as a fraction of the colour scale. It grows so fast with distance that linear
    interpolation is a colour step off on most triangles. */
 #define BLIND_ACCEPTED 0.1f
@@ -44,6 +43,7 @@ enum { GROUP = 64, GRAIN = 1024, MAX_PIECES = 96 };
 /* if interpolation errors affect at least this fraction of the area of a level of detail, an error is stored for all vertices
    of the level, even for those without an error of their own */
 #define MARK_ALL 0.75
+#define NOT_SAMPLED (-1.0f)
 #define MIN_ERROR 1e-4f /* interpolation errors smaller than this are stored as 0 */
 
 struct triangle_piece {  /* part of a triangle; the error is sampled at the midpoint of the piece's longest side */
@@ -78,7 +78,9 @@ struct drawn_error_job {
     const uint32_t *members;
     const double *ones;
     uint32_t first;       /* index of the first triangle whose interpolation error to measure */
-    float *errors;        /* interpolation error of each triangle */
+    atomic_size_t samples; /* sum of samples_of() over the level's triangles */
+    size_t every;          /* one of this many triangles that need samples is sampled; 1: all */
+    float *errors;         /* interpolation error of each triangle; NOT_SAMPLED: the triangle needs samples, but is not sampled */
     float *ridges;        /* error of values in each triangle where paths from two sides meet; NULL: not measured */
     float *vertex_errors; /* error of each vertex's value due to errors of geodesic distances; NULL: not measured */
     /* a value that depends on the distance to the nearest sensor alone, which is measured instead of the weights; NULL: the weights
@@ -362,83 +364,18 @@ static void amplify_some(void *arg, size_t begin, size_t end)
     }
 }
 
-/* --- ridges ------------------------------------------------------------------------------------------------------------------ */
-
-struct ridge_triangle { /* shape of a triangle, with corner 0 as origin and the sides e to corner 1 and f to corner 2 */
-    float ee, ef, ff, divisor, longest_m;
-};
-
-/* Returns the largest error of a distance inside a triangle. far_m: distances of its corners from one sensor. If all paths come from
-   one side, a source in the triangle's plane fits these distances. Otherwise the corners' distances are too short for any such
-   source: the fitting one lies off the plane, by the sine of half of the angle between the paths times the distance. */
-static float ridge_error(const struct ridge_triangle *tri, const float far_m[3])
-{
-    const float a2 = far_m[0] * far_m[0], b = far_m[1], c = far_m[2], mean_m = (far_m[0] + b + c) / 3;
-    const float se = 0.5f * (tri->ee + a2 - b * b), sf = 0.5f * (tri->ff + a2 - c * c);
-    const float in_plane2 = (tri->ff * se * se - 2 * tri->ef * se * sf + tri->ee * sf * sf) / tri->divisor;
-    const float rounding = 2 * ROUNDING * mean_m * tri->longest_m / sqrtf(tri->divisor);
-    const float sine2 = (a2 - in_plane2) / (mean_m * mean_m) - rounding;
-    return sine2 > 0 ? RIDGE_PART * tri->longest_m * sqrtf(fminf(sine2, 1)) : 0;
-}
-
-/* Returns the error of values inside a triangle due to distances there that do not follow from those of its corners, for the
-   worst readings: relative to the spread of the readings (paper: to the largest). */
-static float ridge_error_of(const struct weights *weights, const uint32_t corners[3], float near_m)
-{
-    const struct field_layout *layout = weights->layout;
-    const float(*at)[3] = layout->file->view.positions_m;
-    const bool paper = weights->interpolation == INTERPOLATION_PAPER;
-    struct ridge_triangle tri = { 0 };
-    float total = 0, first = 0, second = 0;
-    for (int c = 0; c < 3; c++) {
-        float e = at[corners[1]][c] - at[corners[0]][c], f = at[corners[2]][c] - at[corners[0]][c];
-        tri.ee += e * e, tri.ef += e * f, tri.ff += f * f;
-    }
-    tri.divisor = tri.ee * tri.ff - tri.ef * tri.ef;
-    tri.longest_m = sqrtf(fmaxf(tri.ee, fmaxf(tri.ff, tri.ee + tri.ff - 2 * tri.ef)));
-    if (!(tri.divisor > 0))
-        return 0;
-    for (size_t m = 0; m < weights->member_count; m++) {
-        const uint32_t sensor = weights->members[m];
-        float far_m[3], scratch, error_m;
-        for (int k = 0; k < 3; k++)
-            far_m[k] = *layout_distances(layout, weights->distance, sensor, corners[k], 1, &scratch);
-        const float mean_m = (far_m[0] + far_m[1] + far_m[2]) / 3;
-        if (!(mean_m < weights->reach_m) || !(mean_m > 0))
-            continue;
-        const float weight = paper ? expf(weights->strength[sensor] * fmaxf(0, 1 - mean_m / weights->radius_m))
-                                   : weights->strength[sensor] * powf(near_m / mean_m, weights->power);
-        total += weight;
-        error_m = mean_m < weights->radius_m || !paper ? ridge_error(&tri, far_m) : 0;
-        const float change = paper ? (1 + weights->strength[sensor]) * error_m / weights->radius_m : weights->power * error_m / mean_m;
-        first += weight * change;
-        second += weight * weight * change;
-    }
-    if (!(total > 0))
-        return 0;
-    const float error = paper ? first / total : first / total - second / (total * total);
-    /* marks the triangle also if the weights overflow, so that the error is NaN */
-    return error <= 0.5f * STEP_OF_COLOR ? 0 : fminf(error, 1);
-}
-
 /* --- measuring the errors of an asset's triangles --------------------------------------------------------------------------- */
 
-static void measure_ridges(void *arg, size_t begin, size_t end)
+/* Returns the largest length of a piece, relative to its distance to the nearest sensor. */
+static float step_of(const struct drawn_error_job *job)
 {
-    const struct drawn_error_job *job = arg;
-    const struct weights *weights = job->weights;
-    const uint32_t *indices = weights->layout->file->view.indices;
-    for (size_t t = job->first + begin; t < job->first + end; t++) {
-        const uint32_t *corners = indices + 3 * t;
-        const float near_m = fminf(weights->near_m[corners[0]], fminf(weights->near_m[corners[1]], weights->near_m[corners[2]]));
-        if (job->errors[t] < 1 && isfinite(near_m))
-            job->ridges[t] = ridge_error_of(weights, corners, fmaxf(near_m, 1e-6f));
-    }
+    return job->near ? STEP : STEP * fminf(1, MAX_POWER / job->weights->power);
 }
 
-/* Returns true if a triangle needs no samples: it is small compared with the distance to the nearest sensor or, in a coarse
-   level, smaller than the pixels with which the level is drawn. */
-static bool is_straight(const struct drawn_error_job *job, const uint32_t corners[3])
+/* Returns the number of pieces into which a triangle is split at most, one sample each; 0: it needs no samples, because it is
+   small compared with the distance to the nearest sensor or, in a coarse level, smaller than the pixels with which the level is
+   drawn. */
+static int samples_of(const struct drawn_error_job *job, const uint32_t corners[3])
 {
     const struct weights *weights = job->weights;
     const float(*at)[3] = weights->layout->file->view.positions_m;
@@ -452,9 +389,29 @@ static bool is_straight(const struct drawn_error_job *job, const uint32_t corner
         if (weights->reach_m < INFINITY && !job->near)
             near_m = fminf(near_m, fabsf(weights->reach_m - weights->near_m[corners[k]]));
     }
-    if (job->near)
-        return longest_m < 2 * job->error_m || is_even(job->near, longest_m, near_m, far_m);
-    return !data || longest_m < 2 * job->error_m || longest_m <= job->accepted * (near_m - longest_m);
+    if (longest_m < 2 * job->error_m || (job->near ? is_even(job->near, longest_m, near_m, far_m) : !data))
+        return 0;
+    if (!job->near && longest_m <= job->accepted * (near_m - longest_m))
+        return 0;
+    float pieces = longest_m / fmaxf(step_of(job) * near_m, 0.1f * longest_m);
+    return 1 + (int)fminf(pieces * pieces, MAX_PIECES - 1);
+}
+
+static void count_samples(void *arg, size_t begin, size_t end)
+{
+    struct drawn_error_job *job = arg;
+    const uint32_t *indices = job->weights->layout->file->view.indices;
+    size_t samples = 0;
+    for (size_t t = job->first + begin; t < job->first + end; t++)
+        samples += (size_t)samples_of(job, indices + 3 * t);
+    atomic_fetch_add_explicit(&job->samples, samples, memory_order_relaxed);
+}
+
+/* Returns whether triangle t is one of those that are sampled. A regular mesh repeats its triangles, so that every n-th might be
+   one side of each quadrangle; Fibonacci hashing prevents this. */
+static bool is_sampled(const struct drawn_error_job *job, size_t t)
+{
+    return job->every == 1 || ((uint32_t)t * 0x9E3779B9u >> 8) % job->every == 0;
 }
 
 static void measure_some(void *arg, size_t begin, size_t end)
@@ -463,9 +420,12 @@ static void measure_some(void *arg, size_t begin, size_t end)
     struct sampler *sampler = NULL;
     uint32_t *indices = (uint32_t *)job->weights->layout->file->view.indices;
     bool good = true;
-    float step = job->near ? STEP : STEP * fminf(1, MAX_POWER / job->weights->power);
     for (size_t t = job->first + begin; t < job->first + end; t++) {
-        bool straight = is_straight(job, indices + 3 * t);
+        bool straight = samples_of(job, indices + 3 * t) == 0;
+        if (!straight && !is_sampled(job, t)) {
+            job->errors[t] = NOT_SAMPLED;
+            straight = true;
+        }
         if (!straight && !sampler) {
             sampler = mem_new(sizeof(*sampler));
             good = sampler_init(sampler, job);
@@ -477,7 +437,7 @@ static void measure_some(void *arg, size_t begin, size_t end)
             job->errors[t] = 1;
         }
         if (sampler && (sampler->tri_count == GROUP || (sampler->tri_count > 0 && t + 1 == job->first + end)))
-            sample_group(sampler, step);
+            sample_group(sampler, step_of(job));
     }
     if (sampler)
         sampler_finish(sampler);
@@ -590,16 +550,53 @@ static void spread(struct weights *weights, const struct drawn_error_job *job, c
     raise_vertices(file, level, errors, least, weights->errors);
 }
 
-/* Measures the errors of interpolation, and those at ridges, in the triangles of one level of detail. */
-static void measure_triangles(struct drawn_error_job *job, const struct asset_level *level, struct workers *workers)
+static void for_triangles(struct drawn_error_job *job, const struct asset_level *level, struct workers *workers, size_t grain,
+                          void (*work)(void *arg, size_t begin, size_t end))
 {
     const struct asset_view *file = &job->weights->layout->file->view;
     for (uint32_t p = level->first_primitive; p < level->first_primitive + level->primitive_count; p++) {
         job->first = file->primitives[p].first_index / 3;
-        workers_for(workers, file->primitives[p].index_count / 3, GRAIN, measure_some, job);
-        if (job->ridges)
-            workers_for(workers, file->primitives[p].index_count / 3, GRAIN, measure_ridges, job);
+        workers_for(workers, file->primitives[p].index_count / 3, grain, work, job);
     }
+}
+
+static void measure_ridges(void *arg, size_t begin, size_t end)
+{
+    const struct drawn_error_job *job = arg;
+    ridges_measure(&(struct ridge_job){ job->weights, job->errors, job->ridges }, job->first + begin, job->first + end);
+}
+
+/* Estimates the errors of the triangles that were not sampled, from the largest of those that were, ridges included. The estimate
+   is at least a step of colour, so that these triangles are marked. */
+static void estimate_rest(struct drawn_error_job *job, const struct asset_level *level)
+{
+    const struct asset_view *file = &job->weights->layout->file->view;
+    float largest = 0.5f * STEP_OF_COLOR;
+    for (int pass = 0; pass < 2; pass++)
+        for (uint32_t p = level->first_primitive; p < level->first_primitive + level->primitive_count; p++) {
+            uint32_t first = file->primitives[p].first_index / 3, count = file->primitives[p].index_count / 3;
+            for (uint32_t t = first; t < first + count; t++)
+                if (pass == 0)
+                    largest = fmaxf(largest, job->errors[t] + (job->ridges ? job->ridges[t] : 0));
+                else if (job->errors[t] == NOT_SAMPLED)
+                    job->errors[t] = fminf(1, MARGIN * largest);
+        }
+}
+
+/* Measures the errors of interpolation, and those at ridges, in the triangles of one level of detail. */
+static void measure_triangles(struct drawn_error_job *job, const struct asset_level *level, struct workers *workers)
+{
+    size_t most = MOST_SAMPLES / job->weights->member_count;
+    most = most > LEAST_SAMPLES ? most : LEAST_SAMPLES;
+    job->samples = 0;
+    for_triangles(job, level, workers, GRAIN, count_samples);
+    job->every = (job->samples + most - 1) / most;
+    job->every = job->every > 0 ? job->every : 1;
+    for_triangles(job, level, workers, GRAIN, measure_some);
+    if (job->ridges)
+        for_triangles(job, level, workers, RIDGE_GROUP, measure_ridges);
+    if (job->every > 1)
+        estimate_rest(job, level);
 }
 
 /* Measures all errors of one level of detail. resolved true: preparation left no interpolation error, so only the effect of

@@ -365,6 +365,14 @@ TEST(test_half_of_needles)
     assert_true(tally.marked_right < tally.marked / 3);
 }
 
+/* With many sensors, only some of the triangles are sampled (MOST_SAMPLES in drawn_error.c). The others are marked, too. */
+TEST(test_triangles_without_samples_are_marked)
+{
+    struct drawn_error_tally tally;
+    tally_plates(SIDE_M / 2, CROWD, DISTANCE_GEODESIC, &tally);
+    expect_truth("half of needles, 200 sensors", &tally);
+}
+
 /* Sets up a plant with one plate of needles and MANY sensors. resolved_levels: bit i tells the renderer that preparation has
    subdivided level i until it shows the field exactly. */
 static void stand_on_plate(struct stand *stand, struct view *view, uint64_t resolved_levels)
