@@ -11,7 +11,7 @@ import { notBuilt, startTiny } from '../support/tiny_plant.mjs';
 const options = { skip: notBuilt(), timeout: 300000 };
 // WARM_UP: unmeasured cycles; CYCLES: measured ones; HEAP_KB: largest allowed growth of the heap in kB per cycle. The heap may take
 // some ten cycles to reach its size, so up to BATCHES times CYCLES are measured until it grows less: a leak grows in each of them.
-const WARM_UP = 3, CYCLES = sweep(5, 2), HEAP_KB = sweep(10, Infinity), BATCHES = 4;
+const WARM_UP = sweep(3, 1), CYCLES = sweep(5, 1), HEAP_KB = sweep(10, Infinity), BATCHES = 4;
 // TRIES: maximum number of comparisons of the page before and after a cycle, PAUSE_MS apart. They are repeated because the page
 // may differ for a moment, for example while it shows a message.
 const TRIES = 40, PAUSE_MS = 250;
