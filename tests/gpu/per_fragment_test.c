@@ -10,7 +10,7 @@
 #include "tests/support/synthetic.h"
 #include "value/quality.h"
 
-enum { SENSORS = 701, CELLS = 40, SAMPLES = 1500, BAD_EVERY = 60 };
+enum { SENSORS = 701, SAMPLES = 1500, BAD_EVERY = 60 };
 static const double SIDE_M = 4, TOLERANCE = 1.0 / 255;
 static int side_px; /* pixels per side; each pixel costs a sum over all sensors */
 static struct rig rig;
@@ -31,7 +31,7 @@ static int set_up(void **state)
     for (int i = 0; i < SENSORS; i++)
         for (int c = 0; c < 2; c++)
             places[i][c] = between(0, SIDE_M);
-    shape_plate(&shape, TOY_STEEL, (double[3]){ 0, 0, 0 }, (double[3]){ SIDE_M, 0, 0 }, (double[3]){ 0, SIDE_M, 0 }, CELLS);
+    shape_plate(&shape, TOY_STEEL, (double[3]){ 0, 0, 0 }, (double[3]){ SIDE_M, 0, 0 }, (double[3]){ 0, SIDE_M, 0 }, sweep(40, 20));
     toy_add(toy, "PLATE", &shape, (double[3]){ 0, 0, 0 }, (const double(*)[3])places, SENSORS);
     mem_free(places);
     stand_init(&stand, &rig, toy);
