@@ -510,7 +510,8 @@ test('on every screen a button tells what the alarm filter hides, and clears the
                 await resize(page, { width, height });
                 await press('e');
                 await page.locator('#alarms').waitFor();
-                for (const time of [false, true]) {
+                const withTime = [false, true].filter((_, n) => takes(i, n, 2));
+                for (const time of withTime) {
                     const name = `${width}x${height}${time ? ' with the time bar' : ''}`;
                     if (time) {
                         await press('y');
@@ -540,7 +541,8 @@ test('on every screen a button tells what the alarm filter hides, and clears the
                             await readable(page, '#journal-span') + await readable(page, '#alarms-applied')), true,
                         `${name}: the time range`);
                 }
-                await press('y');
+                if (withTime.at(-1))
+                    await press('y');
                 await press('e');
                 await page.locator('#alarms').waitFor({ state: 'hidden' });
                 assert.deepEqual(errors, [], i);
