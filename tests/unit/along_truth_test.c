@@ -14,7 +14,7 @@
 #include "tests/support/prep_case.h"
 #include "value/quality.h"
 
-enum { SHAPES = 9, MOST_SENSORS = 16, MOST_POINTS = 600, POWERS = 3 };
+enum { SHAPES = 10, MOST_SENSORS = 16, MOST_POINTS = 600, POWERS = 3 };
 /* MOST_BARE: share of the places that may be off by more than a step of colour and not marked */
 static const double STEP = 1 / 255.0, MOST_BARE = 0.002;
 static const double powers[POWERS] = { 1, 2, 4 };
@@ -187,8 +187,11 @@ static void make_shapes(struct along_shape *shapes)
     shapes[8].name = "beam";
     cad_box(&shapes[8].cad, &chance, 1, 1, 2 * fine, 1);
     stretch(&shapes[8].cad, (double[3]){ between(0.2, 0.6), between(0.5, 1), between(4, 8) / fine });
+    shapes[9].name = "needles round a hole";
+    cad_cylinder(&shapes[9].cad, &chance, 640, 1, 1, 0);
+    flatten(&shapes[9].cad, 4);
     for (int i = 0; i < SHAPES; i++)
-        scatter_sensors(&shapes[i], (size_t[SHAPES]){ 3, 2, 5, 16, 8, 4, 6, 5, 4 }[i]);
+        scatter_sensors(&shapes[i], (size_t[SHAPES]){ 3, 2, 5, 16, 8, 4, 6, 5, 4, 5 }[i]);
 }
 
 /* --- preparing -------------------------------------------------------------------------------------------------------------- */

@@ -213,6 +213,51 @@ TEST(shapes_with_every_fault_are_exact_enough)
         test_shape(&shapes[i]);
 }
 
+/* Distance on a plate with a round hole of radius 1 around the origin. */
+static double round_hole_distance(const double a[3], const double b[3])
+{
+    const double from_a = hypot(a[0], a[1]), from_b = hypot(b[0], b[1]);
+    const double turn = fabs(remainder(atan2(a[1], a[0]) - atan2(b[1], b[0]), 2 * M_PI));
+    const double around = turn - acos(fmin(1 / from_a, 1)) - acos(fmin(1 / from_b, 1));
+    return around <= 0 ? hypot3(a, b) : sqrt(fmax(from_a * from_a - 1, 0)) + around + sqrt(fmax(from_b * from_b - 1, 0));
+}
+
+/* A square plate of needles from the rim of a round hole to the outer edge. Paths to the edge bend around the hole. */
+TEST(distances_behind_a_round_hole_are_exact)
+{
+    enum { SOURCES = 12 };
+    struct cad *plate = test_cad();
+    double sources[SOURCES][3] = { 0 }, mean = 0, worst = 0, count = 0;
+    cad_cylinder(plate, &chance, 320, 1, 1, 0);
+    for (size_t v = 0; v < plate->vertex_count; v++) {
+        float *p = plate->positions[v], outer = 4 / fmaxf(fabsf(p[0]), fabsf(p[1]));
+        p[0] *= p[2] > 0 ? outer : 1;
+        p[1] *= p[2] > 0 ? outer : 1;
+        p[2] = 0;
+    }
+    for (int s = 0; s < SOURCES; s++) {
+        const double radius_m = between(1.2, 3.9), angle = between(-M_PI, M_PI);
+        sources[s][0] = radius_m * cos(angle);
+        sources[s][1] = radius_m * sin(angle);
+    }
+    float *distances = mem_array(SOURCES * plate->vertex_count, sizeof(*distances));
+    assert_true(surface_distances(surface_of(plate), (const double(*)[3])sources, SOURCES, distances));
+    for (int s = 0; s < SOURCES; s++)
+        for (size_t v = 0; v < plate->vertex_count; v++) {
+            const double p[3] = { (double)plate->positions[v][0], (double)plate->positions[v][1], 0 };
+            const double truth = round_hole_distance(sources[s], p), straight = hypot3(sources[s], p);
+            if (hypot(p[0], p[1]) < 2 || !(truth > straight))
+                continue;
+            const double error = fabs((double)distances[(size_t)s * plate->vertex_count + v] - truth) / truth;
+            mean += error;
+            worst = fmax(worst, error);
+            count++;
+        }
+    mem_free(distances);
+    print_message("# behind a round hole: mean %.3f %%, %.3f %% off at most\n", 100 * mean / count, 100 * worst);
+    assert_true(mean / count < 0.0025 && worst < 0.005);
+}
+
 /* --- which parts are joined and which are kept apart -------------------------------------------------------------------------- */
 
 static float *distances_from(struct surface *surface, const struct cad *cad, double x, double y, double z)

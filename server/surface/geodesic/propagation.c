@@ -17,6 +17,12 @@
 /* The triangles around a point are lined up in rows of triangles that are each adjacent to the next. This is the maximum number
    of triangles tested to find the next one of a row; if none is adjacent, the row ends. */
 #define MAX_TRIED 64
+/* smallest angle, in radians, by which the triangles around a point exceed a full turn if paths bend there; smaller ones are
+   rounding */
+#define MIN_BEND 1e-6
+/* largest excess of the angle around a point inside the surface, in radians, with which the bend's radius is known. Larger ones occur
+   where parts intersect, at corners whose positions depend on the triangles. */
+#define MAX_SADDLE 0.1
 
 /* Returns the corners of triangle t: a triangle of the intrinsic triangulation, or, for indices after those, an interior (hidden) triangle.
  * tri_sides() writes its side lengths, from corner i to corner i + 1. */
@@ -131,6 +137,23 @@ static int add_row(struct propagation *propagation, uint32_t point, const struct
     return lane;
 }
 
+/* Returns the radius of the arc around which shortest paths bend at a point, from the `count` adjacent triangles around it: the
+   distance to its neighbours divided by the angle that exceeds a full turn, or at the border of the surface half a turn. At a
+   corner, with an excess of one radian or more, the radius is 0. */
+static float bend_radius(const struct vertex_wedge *wedges, size_t count)
+{
+    const struct end *first = &wedges[0].ends[0], *last = &wedges[count - 1].ends[1];
+    const bool is_closed = count > 2 && first->to == last->to && first->length_m == last->length_m;
+    double angle = is_closed ? -2 * M_PI : -M_PI, length_m = 0;
+    for (size_t i = 0; i < count; i++) {
+        angle += acos((double)wedges[i].cosine);
+        length_m += fabs((double)wedges[i].ends[0].length_m) / (double)count;
+    }
+    if (!is_closed)
+        length_m = (fabs((double)first->length_m) + fabs((double)last->length_m)) / 2;
+    return angle > MIN_BEND && (!is_closed || angle < MAX_SADDLE) ? (float)(length_m * max_of(1 / angle - 1, 0)) : PROPAGATION_NO_BEND;
+}
+
 static void add_fans(struct propagation *propagation, uint32_t point, struct vertex_wedge *wedges, size_t count)
 {
     int lane = PROPAGATION_FAN;
@@ -138,6 +161,8 @@ static void add_fans(struct propagation *propagation, uint32_t point, struct ver
         row = extend(wedges + begin, 1, count - begin);
         reverse(wedges + begin, row);
         row = extend(wedges + begin, row, count - begin);
+        /* paths that bend from one row to another are rare, and their bends are not known */
+        propagation->bend_radius_m[point] = row == count ? bend_radius(wedges, count) : PROPAGATION_NO_BEND;
         lane = add_row(propagation, point, wedges + begin, row, lane);
     }
 }
@@ -201,6 +226,7 @@ void propagation_init(struct propagation *propagation, const struct trimesh *mes
 {
     *propagation = (struct propagation){ .mesh = mesh, .in = in };
     propagation->hidden = mem_array(mesh->point_count, 1);
+    propagation->bend_radius_m = mem_array(mesh->point_count, sizeof(*propagation->bend_radius_m));
     propagation->first = mem_array(mesh->point_count + 1, sizeof(*propagation->first));
     memset(propagation->hidden, 1, mesh->point_count);
     for (size_t t = 0; t < visible_count; t++)
@@ -215,5 +241,6 @@ void propagation_finish(struct propagation *propagation)
     mem_free(propagation->first);
     mem_free(propagation->fans);
     mem_free(propagation->hidden);
+    mem_free(propagation->bend_radius_m);
     *propagation = (struct propagation){ 0 };
 }

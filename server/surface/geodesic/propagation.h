@@ -7,6 +7,8 @@
 #include "surface/geodesic/intrinsic.h"
 
 #define PROPAGATION_FAN 8 /* number of neighbours of a point that are processed together, one per lane of a vector register */
+/* bend_radius_m of a point at which paths do not bend, or bend in an unknown way */
+#define PROPAGATION_NO_BEND 1e30f
 
 /* Data about a mesh that all propagations share: around each point, its neighbours and triangles in angular order (fans). */
 struct propagation {
@@ -27,6 +29,9 @@ struct propagation {
     } * fans;
     size_t fan_count, fan_capacity;
     char *hidden;      /* by point: 1 if the point belongs to no visible triangle */
+    /* by point: radius in metres of the arc around which shortest paths bend there, around a hole or a saddle; 0: at a corner;
+       PROPAGATION_NO_BEND: not at all */
+    float *bend_radius_m;
     float steps_per_m; /* number of buckets of the priority queue per metre of distance */
     double near_m;     /* distance from the source up to which points get exact distances, along straight lines on the unfolded surface */
     uint32_t bucket_count;
@@ -42,6 +47,9 @@ void propagation_finish(struct propagation *propagation);
 /* State of one propagation (from one source), used by one thread. Initialise with zeros; may be reused for further sources. */
 struct propagation_front {
     float *distance_m; /* per point; INFINITY: not reached */
+    /* per point: distance from the source to the last point at which the path bends, around a hole or a saddle; 0: the path is
+       straight on the unfolded surface */
+    float *bend_m;
     /* by point: straight-line distance in metres from the source of the propagation, a lower bound of the geodesic distance */
     float *straight_m;
     char *settled;

@@ -36,6 +36,7 @@ typedef int32_t mask __attribute__((vector_size(4 * PROPAGATION_FAN)));
 void propagation_front_finish(struct propagation_front *front)
 {
     mem_free(front->distance_m);
+    mem_free(front->bend_m);
     mem_free(front->straight_m);
     mem_free(front->settled);
     mem_free(front->buckets);
@@ -48,10 +49,11 @@ static bool clear(const struct propagation *propagation, struct propagation_fron
     size_t count = propagation->mesh->point_count;
     if (!front->distance_m) {
         front->distance_m = mem_try_array(count, sizeof(*front->distance_m));
+        front->bend_m = mem_try_array(count, sizeof(*front->bend_m));
         front->straight_m = mem_try_array(count, sizeof(*front->straight_m));
         front->settled = mem_try_array(count, 1);
         front->buckets = mem_try_array(propagation->bucket_count, sizeof(*front->buckets));
-        if (!front->distance_m || !front->straight_m || !front->settled || !front->buckets)
+        if (!front->distance_m || !front->bend_m || !front->straight_m || !front->settled || !front->buckets)
             return false;
         /* marks the buckets of the priority queue as empty when they are allocated; each propagation leaves them empty for the next one */
         memset(front->buckets, 0xff, propagation->bucket_count * sizeof(*front->buckets));
@@ -74,8 +76,9 @@ static inline void fetch_fans(const struct propagation *propagation, uint32_t po
 
 /* Lowers a point's distance to the offered one, but not below the straight-line distance. An offer can be too short where the
    distances at an edge's two ends come from different paths, around a fold or a rod: no position of the source fits both, and
-   the computed one is too near. */
-static inline void offer(const struct propagation *propagation, struct propagation_front *front, uint32_t point, float offered_m)
+   the computed one is too near. bend_m: distance from the source to the last bend of the offered path. */
+static inline void offer(const struct propagation *propagation, struct propagation_front *front, uint32_t point, float offered_m,
+                         float bend_m)
 {
     float distance_m = offered_m < front->straight_m[point] ? front->straight_m[point] : offered_m;
     if (!(distance_m < front->distance_m[point]))
@@ -84,6 +87,7 @@ static inline void offer(const struct propagation *propagation, struct propagati
         fetch_fans(propagation, point);
     const bool is_correction = distance_m < front->distance_m[point] * (1 - CORRECTION);
     front->distance_m[point] = distance_m;
+    front->bend_m[point] = bend_m;
     if (front->settled[point] && (!is_correction || front->item_count >= MAX_ENTRIES * propagation->mesh->point_count))
         return;
     front->settled[point] = 0;
@@ -120,19 +124,28 @@ SIMD_BODY void choose(const mask *which, const lanes *x, const lanes *otherwise,
 
 /* An edge from p to b, and the side from p to the triangle's third point c, in each lane. */
 struct edge_lanes {
-    const lanes *d_of_p;          /* distance from the source to p */
-    lanes d_of_b, p_to_b, p_to_c; /* distance from the source to b; lengths of the edge and of the side */
+    const lanes *d_of_p, *bend_of_p; /* distances from the source to p, and to the last bend of the path to p */
+    lanes d_of_b, bend_of_b;
+    lanes p_to_b, p_to_c; /* lengths of the edge and of the side */
 };
 
 /* Computes, in each lane, the distance at which the path through the edge from p to b reaches point c. p is at distance d from
- * the source, b at db. The edge has length pb, the side from p to c length pc and the cosine and sine of its angle to the edge.
- * The source is placed in the triangle's plane, beyond the edge. The result is INFINITY where the ray from the source to c does
- * not pass between p and b. It is also INFINITY where db exceeds `reached`, because such a distance is not final. */
-SIMD_BODY void through_edge(const struct edge_lanes *edge, const lanes *reached, const lanes *cosine, const lanes *sine, lanes *out)
+ * the last bend of its path, b at db. The edge has length pb, the side from p to c length pc and the cosine and sine of its
+ * angle to the edge. The bend is placed in the triangle's plane, beyond the edge. The result is INFINITY where the ray from
+ * there to c does not pass between p and b. It is also INFINITY where the distance of b exceeds `reached`, because such a
+ * distance is not final. *bend: distance from the source to the last bend of the path to c. */
+SIMD_BODY void through_edge(const struct edge_lanes *edge, const lanes *reached, const lanes *cosine, const lanes *sine, lanes *bend,
+                            lanes *out)
 {
-    const lanes zero = { 0 }, infinite = zero + INFINITY, d = *edge->d_of_p, db = edge->d_of_b, pb = edge->p_to_b, pc = edge->p_to_c;
+    const lanes zero = { 0 }, infinite = zero + INFINITY, pb = edge->p_to_b, pc = edge->p_to_c;
+    const lanes bend_of_p = *edge->bend_of_p, later = edge->bend_of_b - bend_of_p;
+    /* The earlier of the two bends gives the longer path, which is not too short. */
+    mask is_earlier = later < zero;
+    lanes shared;
+    choose(&is_earlier, &edge->bend_of_b, edge->bend_of_p, &shared);
+    const lanes d = *edge->d_of_p - shared, db = edge->d_of_b - shared;
     lanes sx = (d - db) * (d + db) / (2 * pb) + 0.5f * pb, sy2 = (d - sx) * (d + sx);
-    mask seen = (sy2 >= zero) & (db <= *reached);
+    mask seen = (sy2 >= zero) & (edge->d_of_b <= *reached);
     lanes sy = (lanes)(seen & (mask)sy2), cx = pc * *cosine, cy = pc * *sine;
     root(&sy);
     /* cut / height: position of the ray's crossing with the edge, measured from p */
@@ -140,33 +153,9 @@ SIMD_BODY void through_edge(const struct edge_lanes *edge, const lanes *reached,
     seen &= (cy > zero) & (cut >= zero) & (cut <= pb * height);
     lanes straight = x * x + height * height;
     root(&straight);
+    straight += shared;
+    *bend = bend_of_p + cut / (pb * height) * later;
     choose(&seen, &straight, &infinite, out);
-}
-
-/* Computes the distance that point p, at distance d, offers to each neighbour in a fan: the shorter of two. One is d plus the
- * edge's length. The other passes through the triangle shared with the previous or next neighbour. It exists only if that
- * neighbour is nearer to the source than this one. */
-SIMD_BODY void offers_of(const lanes *d_of_p, const lanes *reached, const lanes *d_of_each, const lanes *length_m, const lanes *cosine,
-                         const lanes *sine, lanes *out)
-{
-    const lanes infinite = (lanes){ 0 } + INFINITY, here = *d_of_each, length = *length_m;
-    lanes next = __builtin_shufflevector(here, here, 1, 2, 3, 4, 5, 6, 7, 7);
-    lanes next_length = __builtin_shufflevector(length, length, 1, 2, 3, 4, 5, 6, 7, 7);
-    mask to_here = here > next;
-    struct edge_lanes edge = { .d_of_p = d_of_p };
-    lanes through, to_this, to_next;
-    choose(&to_here, &next, &here, &edge.d_of_b);
-    choose(&to_here, &next_length, &length, &edge.p_to_b);
-    choose(&to_here, &length, &next_length, &edge.p_to_c);
-    through_edge(&edge, reached, cosine, sine, &through);
-    choose(&to_here, &through, &infinite, &to_this);
-    choose(&to_here, &infinite, &through, &to_next);
-    to_next = __builtin_shufflevector(to_next, infinite, 8, 0, 1, 2, 3, 4, 5, 6);
-    mask less = to_next < to_this;
-    choose(&less, &to_next, &to_this, &through);
-    lanes along = *d_of_p + length;
-    less = through < along;
-    choose(&less, &through, &along, out);
 }
 
 /* State of a front (the propagation from one source) while its current point is processed. */
@@ -174,12 +163,61 @@ struct front_turn {
     struct propagation_front *front;
     /* fan being processed (up to PROPAGATION_FAN neighbours of the current point), and end of the current point's fans */
     const struct propagation_fan *fan, *end;
-    /* d: distance of the current point, in all lanes; reached: distance up to which distances are final */
-    lanes d, reached;
+    /* d, bend: distance of the current point and of the last bend of its path, in all lanes; radius: of the arc around which paths
+       bend there; reached: distance up to which distances are final */
+    lanes d, bend, radius, reached;
     uint32_t empty;                   /* number of consecutive empty buckets */
     float offered_m[PROPAGATION_FAN]; /* offers to the fan's points */
+    float bends_m[PROPAGATION_FAN];   /* distances from the source to the last bends of the offered paths */
     uint32_t takes;                   /* bit mask of lanes in which the offered distance is shorter than the neighbour's current distance */
 };
+
+/* Computes where a path that follows the edge from point p, at distance d, to a neighbour bends last: along is its length.
+   Around a corner, the path bends at p itself. Around a curve of many points, a shortest path leaves the curve before p: the
+   tangent from a point at height h above an arc of radius r has a length of about sqrt(2 r h). */
+SIMD_BODY void bend_at(const struct front_turn *turn, const lanes *length_m, const lanes *along, lanes *bend)
+{
+    lanes tangent = 2 * turn->radius * *length_m;
+    root(&tangent);
+    *bend = *along - tangent;
+    mask is_before = *bend < turn->bend;
+    mask is_beyond = *bend > turn->d;
+    choose(&is_before, &turn->bend, bend, bend);
+    choose(&is_beyond, &turn->d, bend, bend);
+}
+
+/* Computes the distance that point p, at distance d, offers to each neighbour in a fan: the shorter of two. One is d plus the
+ * edge's length. The other passes through the triangle shared with the previous or next neighbour. It exists only if that
+ * neighbour is nearer to the source than this one. bend: distances from the source to the last bends of the paths to the
+ * neighbours, and then those of the offered paths. */
+SIMD_BODY void offers_of(const struct front_turn *turn, const lanes *d_of_each, const lanes *length_m, const lanes *cosine,
+                         const lanes *sine, lanes *bend, lanes *out)
+{
+    const lanes infinite = (lanes){ 0 } + INFINITY, here = *d_of_each, length = *length_m, bend_here = *bend;
+    lanes next = __builtin_shufflevector(here, here, 1, 2, 3, 4, 5, 6, 7, 7);
+    lanes next_length = __builtin_shufflevector(length, length, 1, 2, 3, 4, 5, 6, 7, 7);
+    lanes next_bend = __builtin_shufflevector(bend_here, bend_here, 1, 2, 3, 4, 5, 6, 7, 7);
+    mask to_here = here > next;
+    struct edge_lanes edge = { .d_of_p = &turn->d, .bend_of_p = &turn->bend };
+    lanes through, bend_through, to_this, to_next, bend_to_next;
+    choose(&to_here, &next, &here, &edge.d_of_b);
+    choose(&to_here, &next_bend, &bend_here, &edge.bend_of_b);
+    choose(&to_here, &next_length, &length, &edge.p_to_b);
+    choose(&to_here, &length, &next_length, &edge.p_to_c);
+    through_edge(&edge, &turn->reached, cosine, sine, &bend_through, &through);
+    choose(&to_here, &through, &infinite, &to_this);
+    choose(&to_here, &infinite, &through, &to_next);
+    to_next = __builtin_shufflevector(to_next, infinite, 8, 0, 1, 2, 3, 4, 5, 6);
+    bend_to_next = __builtin_shufflevector(bend_through, infinite, 8, 0, 1, 2, 3, 4, 5, 6);
+    mask less = to_next < to_this;
+    choose(&less, &to_next, &to_this, &through);
+    choose(&less, &bend_to_next, &bend_through, &bend_through);
+    lanes along = turn->d + length;
+    bend_at(turn, length_m, &along, bend);
+    less = through < along;
+    choose(&less, &through, &along, out);
+    choose(&less, &bend_through, bend, bend);
+}
 
 /* Takes the next point from the buckets and makes its fans (neighbours and triangles around it) the current ones. Returns false if all
  * buckets are empty. */
@@ -198,6 +236,8 @@ SIMD_BODY bool next_point(const struct propagation *propagation, struct front_tu
                 continue;
             front->settled[item.point] = 1;
             turn->d = front->distance_m[item.point] - (lanes){ 0 };
+            turn->bend = front->bend_m[item.point] - (lanes){ 0 };
+            turn->radius = propagation->bend_radius_m[item.point] - (lanes){ 0 };
             turn->reached = turn->d + ANY_ORDER / propagation->steps_per_m;
             turn->fan = propagation->fans + propagation->first[item.point];
             turn->end = propagation->fans + propagation->first[item.point + 1];
@@ -214,9 +254,11 @@ SIMD_BODY void look_round(struct front_turn *turn)
 {
     const lanes zero = { 0 };
     const struct propagation_fan *fan = turn->fan;
-    lanes each, length, cosine, sine, offers;
+    lanes each, bend, length, cosine, sine, offers;
     for (int i = 0; i < PROPAGATION_FAN; i++)
         each[i] = turn->front->distance_m[fan->to[i]];
+    for (int i = 0; i < PROPAGATION_FAN; i++)
+        bend[i] = turn->front->bend_m[fan->to[i]];
     memcpy(&length, fan->length_m, sizeof(length));
     memcpy(&cosine, fan->cosine, sizeof(cosine));
     memcpy(&sine, fan->sine, sizeof(sine));
@@ -224,9 +266,10 @@ SIMD_BODY void look_round(struct front_turn *turn)
        from this point to a third one that is nearer still */
     mask takes = length >= zero;
     length = (lanes)((mask)length & INT32_MAX);
-    offers_of(&turn->d, &turn->reached, &each, &length, &cosine, &sine, &offers);
+    offers_of(turn, &each, &length, &cosine, &sine, &bend, &offers);
     takes &= offers < each;
     memcpy(turn->offered_m, &offers, sizeof(offers));
+    memcpy(turn->bends_m, &bend, sizeof(bend));
     turn->takes = bits_of(&takes);
 }
 
@@ -234,7 +277,7 @@ SIMD_BODY void hand_out(const struct propagation *propagation, struct front_turn
 {
     for (uint32_t left = turn->takes; left; left &= left - 1) {
         int i = __builtin_ctz(left);
-        offer(propagation, turn->front, turn->fan->to[i], turn->offered_m[i]);
+        offer(propagation, turn->front, turn->fan->to[i], turn->offered_m[i], turn->bends_m[i]);
     }
 }
 
@@ -279,7 +322,7 @@ static void look_through(const struct propagation *propagation, struct propagati
     if (!after_low && !before_high)
         return;
     if (after_low && before_high && distance_m < propagation->near_m)
-        offer(propagation, front, in->points[t][(side + 2) % 3], (float)distance_m);
+        offer(propagation, front, in->points[t][(side + 2) % 3], (float)distance_m, 0);
     for (uint32_t i = 0; i < 2; i++) {
         struct window next = *window;
         next.entered = in->glue[t][(side + 1 + i) % 3];
@@ -418,7 +461,7 @@ static void look_around(const struct propagation *propagation, struct propagatio
         return;
     for (int i = 0; i < 3; i++) {
         struct window window = { .entered = in->glue[laid.tri][i] };
-        offer(propagation, front, in->points[laid.tri][i], (float)hypot(laid.corners[i][0], laid.corners[i][1]));
+        offer(propagation, front, in->points[laid.tri][i], (float)hypot(laid.corners[i][0], laid.corners[i][1]), 0);
         memcpy(window.l, laid.corners[i], sizeof(window.l));
         memcpy(window.r, laid.corners[(i + 1) % 3], sizeof(window.r));
         memcpy(window.low, window.l, sizeof(window.low));
@@ -493,7 +536,7 @@ static bool set_out(const struct propagation *propagation, struct propagation_fr
             weights[0] * mesh->points[v[0]][axis] + weights[1] * mesh->points[v[1]][axis] + weights[2] * mesh->points[v[2]][axis];
     (simd_has_avx2() ? measure_straight_wide : measure_straight_plain)(mesh, front);
     for (int i = 0; i < 3; i++)
-        offer(propagation, front, v[i], (float)vec_distance(front->source_m, mesh->points[v[i]]));
+        offer(propagation, front, v[i], (float)vec_distance(front->source_m, mesh->points[v[i]]), 0);
     look_around(propagation, front, tri, weights);
     return true;
 }
