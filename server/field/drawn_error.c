@@ -680,12 +680,13 @@ void drawn_error_measure(struct weights *weights, const struct field_params *par
     /* measures nothing if each pixel evaluates the field, because frames then do not interpolate within triangles */
     if (layout_is_exact(layout, weights->interpolation, weights->distance))
         return;
-    if (weights->measured_levels & bit || weights->prepared || layout->assumed || weights->member_count == 0 || is_constant(weights))
+    if (weights->prepared || layout->assumed || weights->member_count == 0 || is_constant(weights))
         return;
     const bool resolved = layout->file->resolved_levels & bit && in_range && is_as_prepared(weights, params);
-    if (resolved && !amplifies_distances(weights))
+    if ((resolved && !amplifies_distances(weights)) || (resolved ? weights->measured_levels : weights->sampled_levels) & bit)
         return;
     weights->measured_levels |= bit;
+    weights->sampled_levels |= resolved ? 0 : bit;
     struct drawn_error_job job = { .weights = weights,
                                    .params = params,
                                    .usable = usable,

@@ -96,7 +96,9 @@ struct weights {
     /* erring[b]: fraction of the surface (for prepared interpolations: of the vertices) whose interpolation error is at least
        2^-b; the largest over all measured levels of detail */
     float erring[WEIGHTS_ERRING];
-    uint64_t measured_levels; /* bit mask of the levels of detail whose triangles are included in `errors` */
+    /* bit masks of the levels of detail whose errors are included in `errors`: measured_levels: errors of distances; sampled_levels:
+       errors of interpolation and at ridges, too, which are not measured where preparation left none */
+    uint64_t measured_levels, sampled_levels;
     unsigned errors_version;  /* counts the changes of `errors`, so that users can tell that it changed */
     /* [vertex], for interpolations fin and gp: distance in metres by which the vertex is beyond the border of the area with
        data (negative: inside); else NULL */

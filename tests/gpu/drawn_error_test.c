@@ -554,6 +554,35 @@ TEST(test_lost_sensors_wild_readings_and_other_powers_are_measured)
     stand_finish(&stand);
 }
 
+/* Draws the plate with the power 6 for which it was prepared, first with readings within the range if `usual`, then with one far
+   beyond. Returns the error that the last frame states. */
+static double error_of_wild_readings(bool usual)
+{
+    struct stand stand;
+    struct view view;
+    double error = 0;
+    stand_on_plate(&stand, &view, 1);
+    stand.toy->plant.groups[0].power = view.field.power = 6;
+    for (int wild = !usual; wild < 2; wild++) {
+        for (int i = 0; i < MANY; i++)
+            toy_set(stand.snapshot, i, i == 2 && wild ? 300 : 20 + 5 * i, QUALITY_GOOD);
+        struct frame *frame = stand_draw(&stand, &view);
+        error = frame->drawn_error;
+        frame_unref(&frame);
+    }
+    stand_finish(&stand);
+    return error;
+}
+
+/* With a high power, errors of distances are measured even if preparation left no interpolation error. These errors must not hide
+   that of later readings, beyond the range. */
+TEST(test_wild_readings_after_usual_ones_are_measured)
+{
+    const double error = error_of_wild_readings(false);
+    assert_true(error > 100);
+    assert_float_equal(error_of_wild_readings(true), error, 1e-6 * error);
+}
+
 static int count_marked(const struct stand *stand, const struct view *view)
 {
     float(*measured)[4] = mem_array(PIXELS, sizeof(*measured));
