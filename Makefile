@@ -320,7 +320,7 @@ $(out)/tests/faults/%.so: $(out)/obj/tests/faults/%.pic.o
 $(out)/tests/faults/escape: $(out)/obj/tests/faults/escape.o
 	@mkdir -p $(@D); echo "  LINK $@"; $(CC) $(ldflags) -pie -o $@ $<
 # These tests make chosen allocations fail.
-$(out)/tests/unit/relocation_test: ldflags += -Wl,--wrap=mem_try_array
+$(out)/tests/unit/relocation_test $(out)/tests/gpu/drawn_error_test: private ldflags += -Wl,--wrap=mem_try_array
 $(out)/tests/gpu/field_memory_test: ldflags += -Wl,--wrap=mem_try_array,--wrap=pool_take
 # This test sets the wall clock.
 $(out)/tests/unit/historian_test: ldflags += -Wl,--wrap=clock_utc_ns

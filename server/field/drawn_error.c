@@ -600,8 +600,8 @@ static void measure_triangles(struct drawn_error_job *job, const struct asset_le
 }
 
 /* Measures all errors of one level of detail. resolved true: preparation left no interpolation error, so only the effect of
-   errors in distances is measured. */
-static void measure_level(struct drawn_error_job *job, const struct asset_level *level, bool resolved, struct workers *workers)
+   errors in distances is measured. Returns false when out of memory. */
+static bool measure_level(struct drawn_error_job *job, const struct asset_level *level, bool resolved, struct workers *workers)
 {
     struct weights *weights = job->weights;
     const struct field_layout *layout = weights->layout;
@@ -618,10 +618,13 @@ static void measure_level(struct drawn_error_job *job, const struct asset_level 
     job->members_marked = unmarked;
     const size_t blocks = (level->vertex_count + KERNEL_BLOCK - 1) / KERNEL_BLOCK;
     /* preparation cuts triangles at ridges, except for groups whose field is evaluated at each pixel with straight-line distances */
-    if (weights->distance != DISTANCE_EUCLIDEAN && (plant_group_is_exact(layout->group) || layout->trial))
+    const bool has_ridges = weights->distance != DISTANCE_EUCLIDEAN && (plant_group_is_exact(layout->group) || layout->trial);
+    const bool amplifies = amplifies_distances(weights);
+    if (has_ridges)
         job->ridges = mem_try_array(layout->file->view.header->index_count / 3, sizeof(float));
-    if (amplifies_distances(weights))
+    if (amplifies)
         job->vertex_errors = mem_try_array(blocks * KERNEL_BLOCK, sizeof(float));
+    const bool has_memory = (job->ridges || !has_ridges) && (job->vertex_errors || !amplifies);
     workers_for(workers, blocks, 4, prepare_some, weights);
     if (job->vertex_errors)
         workers_for(workers, blocks, 4, amplify_some, job);
@@ -633,6 +636,16 @@ static void measure_level(struct drawn_error_job *job, const struct asset_level 
     mem_free(numbers);
     mem_free(unmarked);
     mem_free(ones);
+    return has_memory;
+}
+
+/* Marks the whole asset, because memory ran out while its errors were measured. */
+static void mark_unknown(struct weights *weights)
+{
+    weights->errors_unknown = true;
+    weights->largest_error = 1;
+    for (int b = 0; b < WEIGHTS_ERRING; b++)
+        weights->erring[b] = 1;
 }
 
 /* Returns true if the field has the same value everywhere, and data everywhere: it is that of one sensor without a limit of its
@@ -696,8 +709,8 @@ void drawn_error_measure(struct weights *weights, const struct field_params *par
                                    .errors = mem_try_array(file->header->index_count / 3, sizeof(float)) };
     weights->errors = weights->errors ? weights->errors : mem_try_array(layout->vertex_count, sizeof(float));
     weights->errors_version++;
-    if (job.errors && weights->errors)
-        measure_level(&job, &file->levels[number], resolved, workers);
+    if (!job.errors || !weights->errors || !measure_level(&job, &file->levels[number], resolved, workers))
+        mark_unknown(weights);
     mem_free(job.errors);
 }
 

@@ -14,7 +14,8 @@
    largest error of the adjacent triangles. The unit is the spread of the readings for shepard, and the largest reading for
    paper. params and usable are those of weights_create(). in_range: the readings differ by no more than preparation assumed.
    Does nothing if each pixel evaluates the field (plant/exact.h), if preparation left no error for these parameters and all
-   sensors are used, if the weights are prepared (then linear within triangles by definition), or when out of memory. */
+   sensors are used, or if the weights are prepared (then linear within triangles by definition). Sets weights->errors_unknown
+   when out of memory. */
 void drawn_error_measure(struct weights *weights, const struct field_params *params, const uint8_t *usable, size_t vertices, bool in_range,
                          struct workers *workers);
 /* A value that depends on the distance to the nearest used sensor alone: SHOW_BLIND and SHOW_DISTANCE. */

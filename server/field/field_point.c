@@ -31,7 +31,7 @@ static double error_near(const struct field_state *state, const struct field_pla
 {
     const struct weights *weights = state->weights;
     const float *errors = weights ? weights->errors : NULL;
-    double most = 0;
+    double most = weights && weights->errors_unknown ? 1 : 0;
     if (errors && weights->interpolation_errors)
         errors = weights->interpolation_errors;
     for (int k = 0; k < 3 && errors; k++)

@@ -167,7 +167,7 @@ bool update_is_in_range(const struct field_state *state)
 static bool choose_error_limit(struct field_state *state)
 {
     const struct weights *weights = state->weights;
-    double scale = weights->errors ? error_scale(state) : 0;
+    double scale = weights->errors || weights->errors_unknown ? error_scale(state) : 0;
     double limit = scale > 0 ? DRAWN_ERROR * error_range(state) / scale : INFINITY;
     bool measured = state->errors_version != weights->errors_version;
     bool seen = measured || (double)weights->largest_error > fmin(limit, state->error_limit);
@@ -235,7 +235,7 @@ void update_flags(const struct field_state *state, const struct weights *weights
     uint8_t spread = fill && !blind && at->no_data == 0 && !at->no_limits ? weights->lost[vertex] : 0;
     at->uncertain = uncertain_of(marked, total, spread);
     at->lacking = weights_lacking_at(weights, vertex, filled);
-    const float error = weights->errors && !field_params_cover(&state->params) ? weights->errors[vertex] : 0;
+    const float error = field_params_cover(&state->params) ? 0 : weights_error_at(weights, vertex);
     if ((blind && weights_blind_off(weights, vertex)) || (double)error > state->error_limit ||
         (error >= WEIGHTS_SHOWS_NO_DATA && !weights->prepared))
         at->uncertain = FLAG;

@@ -390,6 +390,12 @@ uint8_t weights_lacking_at(const struct weights *weights, size_t vertex, bool fi
     return filled || weights->lost[vertex] < reach ? reach : weights->lost[vertex];
 }
 
+float weights_error_at(const struct weights *weights, size_t vertex)
+{
+    const float error = weights->errors ? weights->errors[vertex] : 0;
+    return weights->errors_unknown ? fmaxf(error, 1) : error;
+}
+
 bool weights_interpolates_blind(const struct weights *weights)
 {
     return weights->distance != DISTANCE_EUCLIDEAN && !weights->layout->assumed && weights->member_count > 0;

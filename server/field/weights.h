@@ -92,7 +92,9 @@ struct weights {
     float *interpolation_errors; /* `errors` without the part due to errors of distances; NULL: `errors` has no such part */
     /* [vertex]: 1: a triangle at the vertex shows SHOW_BLIND with a larger error than drawn_error_mark() accepts; NULL: not measured */
     uint8_t *blind_marks;
-    float largest_error;         /* largest element of `errors`, without WEIGHTS_SHOWS_NO_DATA */
+    /* true: memory ran out while errors were measured, so every value may have any error */
+    bool errors_unknown;
+    float largest_error; /* largest element of `errors`, without WEIGHTS_SHOWS_NO_DATA; 1 if errors_unknown */
     /* erring[b]: fraction of the surface (for prepared interpolations: of the vertices) whose interpolation error is at least
        2^-b; the largest over all measured levels of detail */
     float erring[WEIGHTS_ERRING];
@@ -147,6 +149,9 @@ void weights_drop_columns(struct weights *weights);
 /* Returns how far a vertex is beyond the border of the data, encoded as struct scalar's `lacking`. filled: areas around lost
    sensors (those without a usable reading) count as having data. Call weights_prepare() for the vertex's block first. */
 uint8_t weights_lacking_at(const struct weights *weights, size_t vertex, bool filled);
+/* Returns the largest error at a vertex that was measured, relative to the spread of the readings (drawn_error.h); 1 if memory
+   ran out while errors were measured. */
+float weights_error_at(const struct weights *weights, size_t vertex);
 /* Returns true if pictures interpolate SHOW_BLIND between vertices, so that weights->blind_marks must be measured. */
 bool weights_interpolates_blind(const struct weights *weights);
 /* Returns true if SHOW_BLIND may be drawn with too large an error at a vertex: it was measured there, or could not be measured. */

@@ -43,6 +43,16 @@ struct drawn_error_tally {
     int soft, soft_off, flags_off;
 };
 
+/* number of elements of the arrays for which there is no memory; 0: there is memory for all */
+static size_t missing_elements;
+void *__real_mem_try_array(size_t count, size_t bytes_each);
+void *__wrap_mem_try_array(size_t count, size_t bytes_each);
+
+void *__wrap_mem_try_array(size_t count, size_t bytes_each)
+{
+    return missing_elements > 0 && count == missing_elements ? NULL : __real_mem_try_array(count, bytes_each);
+}
+
 static double between(double low, double high)
 {
     return low + (high - low) * synthetic_random_unit(&random_state);
@@ -592,6 +602,32 @@ static int count_marked(const struct stand *stand, const struct view *view)
         marked += measured[i][1] >= 0 && measured[i][1] <= 0.5f && measured[i][2] > 0.5f;
     mem_free(measured);
     return marked;
+}
+
+/* If memory runs out while errors are measured, pictures and picks mark the whole asset. */
+TEST(test_without_memory_for_errors_all_is_marked)
+{
+    struct stand stand;
+    struct view view;
+    struct pick pick;
+    stand_on_plate(&stand, &view, 0);
+    view.field.distance = DISTANCE_GEODESIC;
+    for (int i = 0; i < MANY; i++)
+        toy_set(stand.snapshot, i, i % 2 ? 90 : 10, QUALITY_GOOD);
+    missing_elements = stand.toy->scene.assets[0].file->view.header->index_count / 3;
+    int marked = count_marked(&stand, &view), shown = 0;
+    struct frame *frame = stand_draw(&stand, &view);
+    pick_at(&stand.toy->scene, stand.field, &view, stand.snapshot, WIDTH_PX / 2.0, HEIGHT_PX / 2.0, &pick);
+    missing_elements = 0;
+    float(*measured)[4] = mem_array(PIXELS, sizeof(*measured));
+    assert_true(renderer_measure(stand.renderer, &view, stand.snapshot, true, measured));
+    for (int i = 0; i < PIXELS; i++)
+        shown += measured[i][1] == 0;
+    mem_free(measured);
+    assert_true(marked > 1000 && marked == shown);
+    assert_true(pick.asset == 0 && pick.drawn_error > 0 && frame->drawn_error >= 80);
+    frame_unref(&frame);
+    stand_finish(&stand);
 }
 
 /* Even if shaders sum over all sensors at each pixel, the distances along a surface are interpolated over a triangle. Therefore
