@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The field along surfaces, compared with the formula and exact distances on polyhedra: of picks, and of the values that
-   pictures draw. Wherever a value is off by more than a colour step, it must be marked as uncertain, except at two places in a
-   thousand. The shapes are prepared by
-   plantcast-prep, once for distances along surfaces and once for straight-line distances. */
+   pictures draw, with all sensors and with a lost one. Wherever a value is off by more than a colour step, it must be marked as
+   uncertain, except at two places in a thousand. The shapes are prepared by plantcast-prep, once for distances along surfaces
+   and once for straight-line distances. */
 #include "tests/support/test.h"
 
 #include "field/field.h"
@@ -353,15 +353,17 @@ static size_t choose_places(const struct along_shape *shape, const struct asset_
     return count;
 }
 
-static double truth_of(const double *distances_m, size_t sensors, double power)
+/* lost: the first sensor has no usable reading. Returns NAN if it is the nearest, so that there is no data. */
+static double truth_of(const double *distances_m, size_t sensors, double power, bool lost)
 {
-    double sum = 0, total = 0;
-    for (size_t s = 0; s < sensors; s++) {
+    double sum = 0, total = 0, nearest_m = INFINITY;
+    for (size_t s = lost; s < sensors; s++) {
         double weight = pow(fmax(distances_m[s], 1e-9), -power);
         total += weight;
         sum += s % 2 ? weight : 0;
+        nearest_m = fmin(nearest_m, distances_m[s]);
     }
-    return sum / total;
+    return lost && distances_m[0] < nearest_m ? (double)NAN : sum / total;
 }
 
 /* --- comparing -------------------------------------------------------------------------------------------------------------- */
@@ -379,16 +381,18 @@ static bool drawn_at(const struct scalars *scalars, const struct field_place *pl
 }
 
 static void compare(struct field *field, int asset, struct snapshot *snapshot, const struct along_shape *shape,
-                    const struct along_place *places, const double *distances_m, size_t count, const struct field_params *params,
+                    const struct along_place *places, const double *distances_m, size_t count, const struct field_params *params, bool lost,
                     struct along_tally *tally)
 {
     const struct asset_view *file = &field_scene(field)->assets[asset].file->view;
     for (size_t i = 0; i < count; i++) {
         struct field_point point;
-        double drawn, truth = truth_of(distances_m + i * MOST_SENSORS, shape->sensor_count, params->power);
+        double drawn, truth = truth_of(distances_m + i * MOST_SENSORS, shape->sensor_count, params->power, lost);
         assert_true(field_at(field, asset, params, snapshot, &places[i].place, &point));
         const struct scalars *scalars = field_scalars_of(field, asset, params, snapshot, file->header->vertex_count);
         bool marked = drawn_at(scalars, &places[i].place, &drawn), pick_marked = point.uncertain || point.drawn_error > 0;
+        if (isnan(truth) || point.no_data)
+            continue;
         double pick_off = fabs(point.value - truth), drawn_off = fabs(drawn - truth);
         tally->places++;
         tally->picks_off += pick_off > STEP;
@@ -428,14 +432,16 @@ static void compare_prepared(struct prep_case *c, const char *distance)
         for (size_t s = 0; s < shapes[a].sensor_count; s++)
             snapshot->readings[scene->assets[a].sensors[s].tag] = (struct reading){ .value = s % 2, .quality = QUALITY_GOOD };
         size_t count = choose_places(&shapes[a], &scene->assets[a].file->view, (size_t)sweep(MOST_POINTS, 150), places, distances_m);
-        for (int p = 0; p < POWERS; p++) {
+        for (int p = 0; p < 2 * POWERS; p++) {
+            const bool lost = p >= POWERS;
+            snapshot->readings[scene->assets[a].sensors[0].tag].quality = lost ? QUALITY_BAD_COMMUNICATION_ERROR : QUALITY_GOOD;
             struct along_tally tally = { 0 };
             struct field_params params;
             field_params_default(plant, 0, &params);
             params.distance = DISTANCE_GEODESIC;
-            params.power = powers[p];
-            compare(field, a, snapshot, &shapes[a], places, distances_m, count, &params, &tally);
-            show(test_printf("%s, %s, power %g", distance, shapes[a].name, powers[p]), &tally);
+            params.power = powers[p % POWERS];
+            compare(field, a, snapshot, &shapes[a], places, distances_m, count, &params, lost, &tally);
+            show(test_printf("%s, %s, power %g%s", distance, shapes[a].name, powers[p % POWERS], lost ? ", a lost sensor" : ""), &tally);
             all.places += tally.places;
             all.picks_bare += tally.picks_bare;
             all.drawn_bare += tally.drawn_bare;
