@@ -18,10 +18,9 @@
 /* GROUP: number of triangles evaluated together. GRAIN: number of triangles per job of a worker thread. MAX_PIECES: maximum
    number of pieces into which one triangle is split by repeated halving. */
 enum { GROUP = 64, GRAIN = 1024, MAX_PIECES = 96 };
-/* MOST_SAMPLES: number of samples taken in one level of detail, multiplied by the number of sensors. They take two cores about
-   0.15 s; all those of a part of 50,000 long triangles with 512 sensors would take 10 s. LEAST_SAMPLES: number of samples that are
-   taken in any case. MARGIN: factor by which the error of a triangle without samples may exceed the largest of the others. */
-enum { MOST_SAMPLES = 10000000, LEAST_SAMPLES = 5000, MARGIN = 2 };
+/* MOST_SAMPLES: expected number of samples in one level of detail, multiplied by the number of sensors, up to which all triangles
+   are sampled. They take two cores about 0.15 s; all those of a part of 50,000 long triangles with 512 sensors would take 10 s. */
+enum { MOST_SAMPLES = 10000000 };
 /* largest length of a piece (part of a triangle), relative to its distance to the nearest sensor; longer pieces are halved */
 #define STEP 0.3f
 /* exponent of the distance in the interpolation shepard (inverse distance weighting) up to which pieces of the length STEP are
@@ -43,7 +42,6 @@ enum { MOST_SAMPLES = 10000000, LEAST_SAMPLES = 5000, MARGIN = 2 };
 /* if interpolation errors affect at least this fraction of the area of a level of detail, an error is stored for all vertices
    of the level, even for those without an error of their own */
 #define MARK_ALL 0.75
-#define NOT_SAMPLED (-1.0f)
 #define MIN_ERROR 1e-4f /* interpolation errors smaller than this are stored as 0 */
 
 struct triangle_piece {  /* part of a triangle; the error is sampled at the midpoint of the piece's longest side */
@@ -78,9 +76,10 @@ struct drawn_error_job {
     const uint32_t *members;
     const double *ones;
     uint32_t first;       /* index of the first triangle whose interpolation error to measure */
-    atomic_size_t samples; /* sum of samples_of() over the level's triangles */
-    size_t every;          /* one of this many triangles that need samples is sampled; 1: all */
-    float *errors;         /* interpolation error of each triangle; NOT_SAMPLED: the triangle needs samples, but is not sampled */
+    /* [n]: number of the level's triangles that need about n samples (samples_of()) */
+    atomic_size_t needing[MAX_PIECES + 1];
+    int most_pieces;      /* triangles that need more samples than this get a bound instead; MAX_PIECES: all are sampled */
+    float *errors;        /* interpolation error of each triangle */
     float *ridges;        /* error of values in each triangle where paths from two sides meet; NULL: not measured */
     float *vertex_errors; /* error of each vertex's value due to errors of geodesic distances; NULL: not measured */
     /* a value that depends on the distance to the nearest sensor alone, which is measured instead of the weights; NULL: the weights
@@ -372,28 +371,37 @@ static float step_of(const struct drawn_error_job *job)
     return job->near ? STEP : STEP * fminf(1, MAX_POWER / job->weights->power);
 }
 
-/* Returns the number of pieces into which a triangle is split at most, one sample each; 0: it needs no samples, because it is
-   small compared with the distance to the nearest sensor or, in a coarse level, smaller than the pixels with which the level is
-   drawn. */
-static int samples_of(const struct drawn_error_job *job, const uint32_t corners[3])
+struct triangle_extent {            /* size of a triangle and its distance from sensors and from the border of the reach */
+    float longest_m, near_m, far_m; /* longest side; distances of the nearest and the farthest corner */
+    bool data;                      /* a corner has data */
+};
+
+static struct triangle_extent extent_of(const struct drawn_error_job *job, const uint32_t corners[3])
 {
     const struct weights *weights = job->weights;
     const float(*at)[3] = weights->layout->file->view.positions_m;
-    float longest_m = 0, near_m = INFINITY, far_m = 0;
-    bool data = false;
+    struct triangle_extent extent = { .near_m = INFINITY };
     for (int k = 0; k < 3; k++) {
-        longest_m = fmaxf(longest_m, vecf_distance(at[corners[k]], at[corners[(k + 1) % 3]]));
-        near_m = fminf(near_m, weights->near_m[corners[k]]);
-        far_m = fmaxf(far_m, weights->near_m[corners[k]]);
-        data |= weights->place[corners[k]] != PLACE_NOBODY;
+        extent.longest_m = fmaxf(extent.longest_m, vecf_distance(at[corners[k]], at[corners[(k + 1) % 3]]));
+        extent.near_m = fminf(extent.near_m, weights->near_m[corners[k]]);
+        extent.far_m = fmaxf(extent.far_m, weights->near_m[corners[k]]);
+        extent.data |= weights->place[corners[k]] != PLACE_NOBODY;
         if (weights->reach_m < INFINITY && !job->near)
-            near_m = fminf(near_m, fabsf(weights->reach_m - weights->near_m[corners[k]]));
+            extent.near_m = fminf(extent.near_m, fabsf(weights->reach_m - weights->near_m[corners[k]]));
     }
-    if (longest_m < 2 * job->error_m || (job->near ? is_even(job->near, longest_m, near_m, far_m) : !data))
+    return extent;
+}
+
+/* Returns about how many samples a triangle needs; 0: none, because it is small compared with the distance to the nearest sensor
+   or, in a coarse level, smaller than the pixels with which the level is drawn. */
+static int samples_of(const struct drawn_error_job *job, const struct triangle_extent *extent)
+{
+    const float longest_m = extent->longest_m;
+    if (longest_m < 2 * job->error_m || (job->near ? is_even(job->near, longest_m, extent->near_m, extent->far_m) : !extent->data))
         return 0;
-    if (!job->near && longest_m <= job->accepted * (near_m - longest_m))
+    if (!job->near && longest_m <= job->accepted * (extent->near_m - longest_m))
         return 0;
-    float pieces = longest_m / fmaxf(step_of(job) * near_m, 0.1f * longest_m);
+    float pieces = longest_m / fmaxf(step_of(job) * extent->near_m, 0.1f * longest_m);
     return 1 + (int)fminf(pieces * pieces, MAX_PIECES - 1);
 }
 
@@ -401,17 +409,51 @@ static void count_samples(void *arg, size_t begin, size_t end)
 {
     struct drawn_error_job *job = arg;
     const uint32_t *indices = job->weights->layout->file->view.indices;
-    size_t samples = 0;
-    for (size_t t = job->first + begin; t < job->first + end; t++)
-        samples += (size_t)samples_of(job, indices + 3 * t);
-    atomic_fetch_add_explicit(&job->samples, samples, memory_order_relaxed);
+    size_t needing[MAX_PIECES + 1] = { 0 };
+    for (size_t t = job->first + begin; t < job->first + end; t++) {
+        struct triangle_extent extent = extent_of(job, indices + 3 * t);
+        needing[samples_of(job, &extent)]++;
+    }
+    for (int n = 0; n <= MAX_PIECES; n++)
+        atomic_fetch_add_explicit(&job->needing[n], needing[n], memory_order_relaxed);
 }
 
-/* Returns whether triangle t is one of those that are sampled. A regular mesh repeats its triangles, so that every n-th might be
-   one side of each quadrangle; Fibonacci hashing prevents this. */
-static bool is_sampled(const struct drawn_error_job *job, size_t t)
+/* Chooses the triangles to sample, so that the level takes at most MOST_SAMPLES: those that need few samples. The others are large
+   compared with their distance to the nearest sensor, so that their bounds rarely are much larger than their errors. */
+static void choose_sampled(struct drawn_error_job *job)
 {
-    return job->every == 1 || ((uint32_t)t * 0x9E3779B9u >> 8) % job->every == 0;
+    const size_t sensors = job->weights->layout->sensor_count + 2 * job->weights->member_count;
+    size_t samples = 0;
+    for (job->most_pieces = 0; job->most_pieces < MAX_PIECES; job->most_pieces++) {
+        samples += (size_t)(job->most_pieces + 1) * job->needing[job->most_pieces + 1];
+        if (samples > MOST_SAMPLES / (sensors > 0 ? sensors : 1))
+            return;
+    }
+}
+
+/* Returns whether a frame might show data inside the triangle where the field has none. The distance beyond the border of the data
+   changes by at most two metres per metre. */
+static bool may_hide_rim(const struct weights *weights, const uint32_t corners[3], float longest_m)
+{
+    float least = 255, most = 0;
+    for (int k = 0; k < 3; k++) {
+        float lacking = weights_lacking_at(weights, corners[k], false);
+        least = fminf(least, lacking);
+        most = fmaxf(most, lacking);
+    }
+    return most > 0 && least <= 127 && most + 2 * longest_m * weights->steps_per_m > 127 + BORDER_SLACK;
+}
+
+/* Returns a bound on the interpolation error inside a triangle (SHEPARD_ACCEPTED); 1: none is known. */
+static float bound_of(const struct drawn_error_job *job, const uint32_t corners[3], const struct triangle_extent *extent)
+{
+    const float away_m = extent->near_m - extent->longest_m;
+    if (!job->near && may_hide_rim(job->weights, corners, extent->longest_m))
+        return WEIGHTS_SHOWS_NO_DATA;
+    if (job->near || job->weights->interpolation != INTERPOLATION_SHEPARD || !(away_m > 0))
+        return 1;
+    const float ratio = extent->longest_m / (job->accepted * away_m);
+    return fminf(1, STEP_OF_COLOR * ratio * ratio);
 }
 
 static void measure_some(void *arg, size_t begin, size_t end)
@@ -421,20 +463,19 @@ static void measure_some(void *arg, size_t begin, size_t end)
     uint32_t *indices = (uint32_t *)job->weights->layout->file->view.indices;
     bool good = true;
     for (size_t t = job->first + begin; t < job->first + end; t++) {
-        bool straight = samples_of(job, indices + 3 * t) == 0;
-        if (!straight && !is_sampled(job, t)) {
-            job->errors[t] = NOT_SAMPLED;
-            straight = true;
-        }
-        if (!straight && !sampler) {
+        uint32_t *corners = indices + 3 * t;
+        struct triangle_extent extent = extent_of(job, corners);
+        int samples = samples_of(job, &extent);
+        bool sampled = samples > 0 && samples <= job->most_pieces;
+        if (sampled && !sampler) {
             sampler = mem_new(sizeof(*sampler));
             good = sampler_init(sampler, job);
         }
-        if (!straight && good) {
-            sampler->tris[sampler->tri_count] = indices + 3 * t;
+        if (sampled && good) {
+            sampler->tris[sampler->tri_count] = corners;
             sampler->errors[sampler->tri_count++] = &job->errors[t];
-        } else if (!straight) { /* out of memory: the error stays unknown, so it is set to the maximum */
-            job->errors[t] = 1;
+        } else if (samples > 0) { /* sampling would take too long, or memory is missing */
+            job->errors[t] = bound_of(job, corners, &extent);
         }
         if (sampler && (sampler->tri_count == GROUP || (sampler->tri_count > 0 && t + 1 == job->first + end)))
             sample_group(sampler, step_of(job));
@@ -566,37 +607,15 @@ static void measure_ridges(void *arg, size_t begin, size_t end)
     ridges_measure(&(struct ridge_job){ job->weights, job->errors, job->ridges }, job->first + begin, job->first + end);
 }
 
-/* Estimates the errors of the triangles that were not sampled, from the largest of those that were, ridges included. The estimate
-   is at least a step of colour, so that these triangles are marked. */
-static void estimate_rest(struct drawn_error_job *job, const struct asset_level *level)
-{
-    const struct asset_view *file = &job->weights->layout->file->view;
-    float largest = 0.5f * STEP_OF_COLOR;
-    for (int pass = 0; pass < 2; pass++)
-        for (uint32_t p = level->first_primitive; p < level->first_primitive + level->primitive_count; p++) {
-            uint32_t first = file->primitives[p].first_index / 3, count = file->primitives[p].index_count / 3;
-            for (uint32_t t = first; t < first + count; t++)
-                if (pass == 0)
-                    largest = fmaxf(largest, job->errors[t] + (job->ridges ? job->ridges[t] : 0));
-                else if (job->errors[t] == NOT_SAMPLED)
-                    job->errors[t] = fminf(1, MARGIN * largest);
-        }
-}
-
 /* Measures the errors of interpolation, and those at ridges, in the triangles of one level of detail. */
 static void measure_triangles(struct drawn_error_job *job, const struct asset_level *level, struct workers *workers)
 {
-    size_t most = MOST_SAMPLES / job->weights->member_count;
-    most = most > LEAST_SAMPLES ? most : LEAST_SAMPLES;
-    job->samples = 0;
+    memset(job->needing, 0, sizeof(job->needing));
     for_triangles(job, level, workers, GRAIN, count_samples);
-    job->every = (job->samples + most - 1) / most;
-    job->every = job->every > 0 ? job->every : 1;
+    choose_sampled(job);
     for_triangles(job, level, workers, GRAIN, measure_some);
     if (job->ridges)
         for_triangles(job, level, workers, RIDGE_GROUP, measure_ridges);
-    if (job->every > 1)
-        estimate_rest(job, level);
 }
 
 /* Measures all errors of one level of detail. resolved true: preparation left no interpolation error, so only the effect of

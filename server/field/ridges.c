@@ -72,7 +72,7 @@ static void ridge_group_set(struct ridge_group *group, const struct ridge_job *j
         const uint32_t *corners = group->indices + 3 * i;
         struct ridge_triangle *tri = &group->tris[i];
         float near_m = fminf(weights->near_m[corners[0]], fminf(weights->near_m[corners[1]], weights->near_m[corners[2]]));
-        bool open = job->errors[begin + i] >= 0 && job->errors[begin + i] < 1 && isfinite(near_m);
+        bool open = job->errors[begin + i] < 1 && isfinite(near_m);
         ridge_triangle_init(tri, file->positions_m, corners);
         group->near_m[i] = open && tri->divisor > 0 ? fmaxf(near_m, 1e-6f) : NAN;
         group->sums[i] = (struct ridge_sums){ 0 };
@@ -145,8 +145,10 @@ void ridges_measure(const struct ridge_job *job, size_t begin, size_t end)
     struct ridge_group *group = mem_new(sizeof(*group));
     group->block_count = (job->weights->layout->vertex_count + KERNEL_BLOCK - 1) / KERNEL_BLOCK;
     group->blocks = mem_array(group->block_count, sizeof(*group->blocks));
-    group->far_m = mem_array(group->block_count * KERNEL_BLOCK, sizeof(*group->far_m));
-    for (size_t t = begin; t < end; t += RIDGE_GROUP)
+    group->far_m = mem_try_array(group->block_count * KERNEL_BLOCK, sizeof(*group->far_m));
+    for (size_t t = begin; t < end && !group->far_m; t++)
+        job->ridges[t] = 1;
+    for (size_t t = begin; t < end && group->far_m; t += RIDGE_GROUP)
         measure_group(group, job, t, end - t < RIDGE_GROUP ? end : t + RIDGE_GROUP);
     mem_free(group->blocks);
     mem_free(group->far_m);

@@ -9,8 +9,10 @@ enum { RIDGE_GROUP = 16384 }; /* number of triangles to examine in one call for 
 
 struct ridge_job {
     const struct weights *weights; /* prepared for all vertices */
-    const float *errors;           /* [triangle]: its other errors; it is left out if they are negative or at least 1 */
-    float *ridges; /* [triangle]: receives the error for the worst readings, relative to their spread (paper: to the largest) */
+    const float *errors;           /* [triangle]: its other errors; it is left out if they are at least 1 */
+    /* [triangle]: receives the error for the worst readings, relative to their spread (paper: to the largest); 1 also if memory is
+       missing */
+    float *ridges;
 };
 
 /* Measures triangles begin..end-1 of the asset. Several threads may measure different triangles at the same time. */

@@ -375,7 +375,7 @@ TEST(test_half_of_needles)
     assert_true(tally.marked_right < tally.marked / 3);
 }
 
-/* With many sensors, only some of the triangles are sampled (MOST_SAMPLES in drawn_error.c). The others are marked, too. */
+/* With many sensors, not all triangles are sampled (MOST_SAMPLES in drawn_error.c). The others are marked, too. */
 TEST(test_triangles_without_samples_are_marked)
 {
     struct drawn_error_tally tally;
