@@ -408,6 +408,14 @@ static size_t depth_bytes(const struct frame *frame)
     return bytes;
 }
 
+/* Returns whether the time for making this frame counts for the size of the session's previews. Followers have their leader's
+   size, and a wall's tiles that of the wall. */
+static bool counts_for_size(const struct session *session, const struct frame_request *request)
+{
+    return request->view.tier == TIER_PREVIEW && request->urgency == URGENCY_INPUT && !request->of_data && !session->following.leader &&
+           !session_is_tile(session);
+}
+
 struct encoded_frame *session_next_frame(struct session *session, int64_t now_ns, uint32_t *seq, enum session_depth *depth)
 {
     struct encoded_frame *encoded = session->delivery.ready;
@@ -416,6 +424,7 @@ struct encoded_frame *session_next_frame(struct session *session, int64_t now_ns
     const struct frame_request *request = &encoded->request;
     struct pacer_note note = { .moving = request->view.tier == TIER_PREVIEW,
                                .full = request->view.tier == TIER_REFINED && !request->draft,
+                               .counts = counts_for_size(session, request),
                                .of_data = request->of_data,
                                .step = request->step,
                                .input_ns = request->view.input_ns,

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Chooses the size of previews so that a picture costs no more time than a limit. The caller says what the cost is: the client's
    time to decode a picture, or the server's time to make one. A picture gets smaller after half a second above the limit, and
-   larger only once the larger one is expected to stay below a lower limit for three seconds. Pure; the caller passes the time. */
+   larger only once the larger one is expected to stay below a lower limit for three seconds, or longer if the last larger one did
+   not hold. Pure; the caller passes the time. */
 #ifndef SESSION_PACING_PICTURE_SIZE_H
 #define SESSION_PACING_PICTURE_SIZE_H
 #include <stdint.h>
@@ -12,6 +13,7 @@ struct picture_size { /* all zeros: full size, nothing measured */
     int index;        /* 0: full size; less than PICTURE_SIZES */
     /* monotonic time in nanoseconds since which the cost has been too high, or low enough for a larger picture; 0: it is not */
     int64_t hard_since_ns, easy_since_ns;
+    int64_t up_ns, patience_ns; /* monotonic time of the last step to a larger picture; least time before the next one; 0: none yet */
 };
 
 struct picture_cost {

@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Chooses the encoding quality and the picture size of one client's previews from the client's bandwidth and speed. */
+/* Chooses the encoding quality and the picture size of one client's previews from the client's bandwidth and speed, and from the
+   server's speed. */
 #include "session/pacing/quality_ladder.h"
+
+#include <math.h>
 
 #include "base/clock.h"
 
@@ -22,7 +25,9 @@ static const double REPROJECTED_SLACK = 1.25;
 /* share of the server's work on a preview that does not depend on its size; measured on the demo plant in 1920x1080 and less */
 static const double MADE_FIXED = 0.25;
 enum { MOST_MADE = 3 }; /* a picture that took longer than this many times SLOW_MADE_NS counts as such: it waited for one long step */
-static const int64_t IDLE_NS = 2 * NS_PER_S; /* nanoseconds without a preview after which the measurement starts again */
+/* Nanoseconds without a preview: after REST_NS, the time since which pictures have been slow is forgotten; after IDLE_NS, what was
+   measured. */
+static const int64_t REST_NS = 200 * NS_PER_MS, IDLE_NS = 2 * NS_PER_S;
 static const double SAMPLE_WEIGHT = 0.25;
 /* limit on the total bytes of one frame's copies for all viewers of a view; the event loop needs some tens of milliseconds to
    send this many */
@@ -139,23 +144,32 @@ static void follow_network(struct quality_ladder *ladder, const struct channel *
     }
 }
 
-void quality_ladder_on_made(struct quality_ladder *ladder, int64_t took_ns, int64_t now_ns)
+/* Starts measuring again after a pause. If a load of the past is gone, the picture gets its size back at once. */
+static void resume(struct quality_ladder *ladder, double took_ns, double easy_ns)
 {
-    double slack = ladder->reprojects ? REPROJECTED_SLACK : 1;
-    int64_t most_ns = MOST_MADE * SLOW_MADE_NS, idle_ns = now_ns - took_ns - ladder->made_at_ns;
-    double sample_ns = (double)(took_ns < most_ns ? took_ns : most_ns);
-    if (idle_ns >= IDLE_NS) {
-        ladder->made_ns = sample_ns;
-        picture_size_pause(&ladder->made);
-        /* A picture that became smaller under a load of the past is full again at once if the load is gone. */
-        ladder->made.easy_since_ns = ladder->made_at_ns;
+    struct picture_size *size = &ladder->made;
+    picture_size_pause(size);
+    while (size->index > 0 && took_ns * picture_size_ratio(size->index, size->index - 1, MADE_FIXED) < easy_ns) {
+        took_ns *= picture_size_ratio(size->index, size->index - 1, MADE_FIXED);
+        size->index--;
     }
-    ladder->made_ns += SAMPLE_WEIGHT * (sample_ns - ladder->made_ns);
+    ladder->made_ns = took_ns;
+}
+
+void quality_ladder_on_made(struct quality_ladder *ladder, int64_t took_ns, bool busy, int64_t now_ns)
+{
+    double slack = ladder->reprojects ? REPROJECTED_SLACK : 1, slow_ns = slack * (double)SLOW_MADE_NS;
+    double sample_ns = fmin((double)took_ns, (busy ? MOST_MADE : 1) * slow_ns);
+    int64_t idle_ns = now_ns - took_ns - ladder->made_at_ns;
+    struct picture_cost cost = { .hard_ns = (int64_t)slow_ns, .easy_ns = (int64_t)(slack * (double)FAST_MADE_NS), .fixed = MADE_FIXED };
+    if (idle_ns >= IDLE_NS)
+        resume(ladder, sample_ns, (double)cost.easy_ns);
+    else if (idle_ns >= REST_NS)
+        ladder->made.hard_since_ns = 0;
+    if (idle_ns < IDLE_NS)
+        ladder->made_ns += SAMPLE_WEIGHT * (sample_ns - ladder->made_ns);
     ladder->made_at_ns = now_ns;
-    struct picture_cost cost = { .cost_ns = (int64_t)ladder->made_ns,
-                                 .hard_ns = (int64_t)(slack * SLOW_MADE_NS),
-                                 .easy_ns = (int64_t)(slack * FAST_MADE_NS),
-                                 .fixed = MADE_FIXED };
+    cost.cost_ns = (int64_t)ladder->made_ns;
     int before = ladder->made.index;
     picture_size_follow(&ladder->made, &cost, now_ns);
     ladder->made_ns *= picture_size_ratio(before, ladder->made.index, MADE_FIXED);
