@@ -573,8 +573,6 @@ static void spread(struct weights *weights, const struct drawn_error_job *job, c
         largest = find_erring(file, level, errors, erring);
     }
     if (at_vertices) {
-        if (!weights->interpolation_errors)
-            weights->interpolation_errors = mem_try_array(weights->layout->vertex_count, sizeof(float));
         if (weights->interpolation_errors)
             raise_vertices(file, level, errors, least, weights->interpolation_errors);
         for (uint32_t p = level->first_primitive; p < level->first_primitive + level->primitive_count; p++) {
@@ -643,7 +641,9 @@ static bool measure_level(struct drawn_error_job *job, const struct asset_level 
         job->ridges = mem_try_array(layout->file->view.header->index_count / 3, sizeof(float));
     if (amplifies)
         job->vertex_errors = mem_try_array(blocks * KERNEL_BLOCK, sizeof(float));
-    const bool has_memory = (job->ridges || !has_ridges) && (job->vertex_errors || !amplifies);
+    if (amplifies && !weights->interpolation_errors)
+        weights->interpolation_errors = mem_try_array(layout->vertex_count, sizeof(float));
+    const bool has_memory = (job->ridges || !has_ridges) && ((job->vertex_errors && weights->interpolation_errors) || !amplifies);
     workers_for(workers, blocks, 4, prepare_some, weights);
     if (job->vertex_errors)
         workers_for(workers, blocks, 4, amplify_some, job);

@@ -392,8 +392,9 @@ uint8_t weights_lacking_at(const struct weights *weights, size_t vertex, bool fi
 
 float weights_error_at(const struct weights *weights, size_t vertex)
 {
-    const float error = weights->errors ? weights->errors[vertex] : 0;
-    return weights->errors_unknown ? fmaxf(error, 1) : error;
+    if (weights->errors_unknown)
+        return WEIGHTS_SHOWS_NO_DATA;
+    return weights->errors ? weights->errors[vertex] : 0;
 }
 
 bool weights_interpolates_blind(const struct weights *weights)

@@ -149,8 +149,8 @@ void weights_drop_columns(struct weights *weights);
 /* Returns how far a vertex is beyond the border of the data, encoded as struct scalar's `lacking`. filled: areas around lost
    sensors (those without a usable reading) count as having data. Call weights_prepare() for the vertex's block first. */
 uint8_t weights_lacking_at(const struct weights *weights, size_t vertex, bool filled);
-/* Returns the largest error at a vertex that was measured, relative to the spread of the readings (drawn_error.h); 1 if memory
-   ran out while errors were measured. */
+/* Returns the largest error at a vertex that was measured, relative to the spread of the readings (drawn_error.h); WEIGHTS_SHOWS_NO_DATA if
+   memory ran out while errors were measured. */
 float weights_error_at(const struct weights *weights, size_t vertex);
 /* Returns true if pictures interpolate SHOW_BLIND between vertices, so that weights->blind_marks must be measured. */
 bool weights_interpolates_blind(const struct weights *weights);
