@@ -54,7 +54,7 @@ test('the VR button is shown only if there is a headset and the server sends dep
     await withHeadset(async (other) => {
         await other.locator('#enter-vr').waitFor({ state: 'attached' });
         assert.equal(await other.locator('#enter-vr').isVisible(), false);
-    }, { at: flat });
+    }, { at: flat, screen: SCREEN });
 });
 
 // Returns the server's snapshot from the position of an eye, which serves as the reference.

@@ -12,7 +12,7 @@
 #include "tests/support/site.h"
 #include "tests/support/synthetic.h"
 
-/* Size of the pictures. The default run draws a sixteenth of the pixels of a long run, but compares as many of them. */
+/* Size of the pictures. The default run draws a sixteenth of the pixels of a long run, but takes as many samples. */
 static int width_px, height_px;
 enum { VIEWS = 14, SAMPLES = 715 }; /* VIEWS: number of views per case; SAMPLES: number of samples per view */
 enum { CLOSE_PX = 32 };             /* samples along each side of the close-up of a pixel, which is two pixels wide */

@@ -246,7 +246,7 @@ test('an open panel covers neither legends nor the bar of a split view, and ends
             await resize(page, { width, height });
             await set({ group: 'temperature', split });
             await page.locator('#legend-right').waitFor({ state: split ? 'visible' : 'hidden' });
-            for (const [button, panel] of Object.entries(panels).filter((_, i) => takes(row, i, 2))) {
+            for (const [button, panel] of Object.entries(panels).filter((_, i) => width === 1024 || (width === 1280 && split) || takes(row, i, 2))) {
                 await page.locator(`#${button}-toggle`).click();
                 await page.locator(`${panel}.open`).waitFor();
                 await becomes(covered, [], `${panel} at ${width}x${height}`);
@@ -371,7 +371,7 @@ test('phones: panels are sheets of at most 40 % beside the picture, the legend i
         await isOpen(false);
         const { height: tall } = await boxOf(page, '#viewport');
         assert.ok(tall >= (upright ? 0.6 : 0.8) * height, `${name}: the bars leave a picture of ${tall} px`);
-        for (const [button, sheet] of Object.entries(SHEETS).filter((_, i) => takes(row, i, 2))) {
+        for (const [button, sheet] of Object.entries(SHEETS).filter((_, i) => !upright || takes(row / 2, i, 2))) {
             await page.locator(`#${button}`).tap();
             await page.waitForFunction(([one, side, whole]) => {
                 const box = document.querySelector(one).getBoundingClientRect();
