@@ -252,8 +252,9 @@ function saveAddress() {
     addressTimer = setTimeout(async () => {
         if (session.leader !== null)
             return; // leaves the URL unchanged, because it names the session to follow
-        const { addressOf } = await import('../core/address.js');
-        history.replaceState(null, '', location.pathname + location.search + addressOf(session, selection.tag));
+        const module = await import('../core/address.js').catch(() => null);
+        if (module) // else the server is away: the next change of the view tries again
+            history.replaceState(null, '', location.pathname + location.search + module.addressOf(session, selection.tag));
     }, ADDRESS_WAIT_MS);
 }
 

@@ -124,7 +124,8 @@ test('titles and current values of the alarm list and the journal are complete, 
             for (const [column, tab] of ['alarms', 'journal'].entries()) {
                 await page.locator(`#${tab}-tab`).click();
                 await page.locator(`#${tab}-list tr`).first().waitFor();
-                for (const width of [1920, 1600, 1400, 1280, 1260, 1240, 1200].filter((px, i) => px === 1200 || takes(row + column, i, 2))) {
+                const widths = [1920, 1600, 1400, 1280, 1260, 1240, 1200];
+                for (const width of widths.filter((px, i) => px === 1200 || takes(row + column, i, 2))) {
                     await resize(page, { width, height: 900 });
                     const cut = await page.evaluate((name) => [...document.querySelectorAll(`#${name}-table thead th`)].filter((head) => {
                         const title = head.querySelector('button') ?? head;

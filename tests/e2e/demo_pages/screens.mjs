@@ -246,7 +246,8 @@ test('an open panel covers neither legends nor the bar of a split view, and ends
             await resize(page, { width, height });
             await set({ group: 'temperature', split });
             await page.locator('#legend-right').waitFor({ state: split ? 'visible' : 'hidden' });
-            for (const [button, panel] of Object.entries(panels).filter((_, i) => width === 1024 || (width === 1280 && split) || takes(row, i, 2))) {
+            const isTight = width === 1024 || (width === 1280 && split);
+            for (const [button, panel] of Object.entries(panels).filter((_, i) => isTight || takes(row, i, 2))) {
                 await page.locator(`#${button}-toggle`).click();
                 await page.locator(`${panel}.open`).waitFor();
                 await becomes(covered, [], `${panel} at ${width}x${height}`);
