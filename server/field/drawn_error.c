@@ -419,12 +419,12 @@ static void count_samples(void *arg, size_t begin, size_t end)
 }
 
 /* Chooses the triangles to sample, so that the level takes at most MOST_SAMPLES: those that need few samples. The others are large
-   compared with their distance to the nearest sensor, so that their bounds rarely are much larger than their errors. */
+   compared with their distance to the nearest sensor, or to the border of the reach. A distance alone (job->near) costs little. */
 static void choose_sampled(struct drawn_error_job *job)
 {
     const size_t sensors = job->weights->layout->sensor_count + 2 * job->weights->member_count;
     size_t samples = 0;
-    for (job->most_pieces = 0; job->most_pieces < MAX_PIECES; job->most_pieces++) {
+    for (job->most_pieces = job->near ? MAX_PIECES : 0; job->most_pieces < MAX_PIECES; job->most_pieces++) {
         samples += (size_t)(job->most_pieces + 1) * job->needing[job->most_pieces + 1];
         if (samples > MOST_SAMPLES / (sensors > 0 ? sensors : 1))
             return;
@@ -432,16 +432,21 @@ static void choose_sampled(struct drawn_error_job *job)
 }
 
 /* Returns whether a frame might show data inside the triangle where the field has none. The distance beyond the border of the data
-   changes by at most two metres per metre. */
+   changes by at most two metres per metre, but not steadily at the border of the surroundings of a sensor without limits. */
 static bool may_hide_rim(const struct weights *weights, const uint32_t corners[3], float longest_m)
 {
     float least = 255, most = 0;
+    bool has_border = weights->reach_m < INFINITY;
+    for (size_t i = 0; i < weights->layout->sensor_count && !has_border; i++)
+        has_border = weights->configured[i] && !weights->takes_part[i];
     for (int k = 0; k < 3; k++) {
+        if (weights->place[corners[k]] == PLACE_NO_LIMITS)
+            return true;
         float lacking = weights_lacking_at(weights, corners[k], false);
         least = fminf(least, lacking);
         most = fmaxf(most, lacking);
     }
-    return most > 0 && least <= 127 && most + 2 * longest_m * weights->steps_per_m > 127 + BORDER_SLACK;
+    return has_border && least <= 127 && most + 2 * longest_m * weights->steps_per_m > 127 + BORDER_SLACK;
 }
 
 /* Returns a bound on the interpolation error inside a triangle (SHEPARD_ACCEPTED); 1: none is known. */

@@ -113,7 +113,7 @@ TEST(a_larger_picture_that_does_not_hold_is_tried_more_rarely)
     struct quality_ladder ladder = { .made.index = 2 };
     int ups = 0, before = 2;
     for (int64_t now_ns = NS_PER_S; now_ns < 120 * NS_PER_S; now_ns += 60 * MS) {
-        quality_ladder_on_made(&ladder, (ladder.made.index == 2 ? 55 : 115) * MS, true, now_ns);
+        quality_ladder_on_made(&ladder, (ladder.made.index == 2 ? 55 : 115) * MS, now_ns);
         ups += ladder.made.index < before;
         before = ladder.made.index;
     }
@@ -205,6 +205,21 @@ TEST(a_network_that_limits_the_rate_is_not_a_slow_server)
         pacer_acked(&pacer, seq, MS, now_ns + 490 * MS);
     }
     assert_int_equal(pacer.ladder.made.index, 0);
+}
+
+/* A network that carries one picture at a time: the next request comes 50 ms after the last picture. */
+TEST(a_slow_server_behind_a_slow_network_makes_smaller_pictures)
+{
+    struct pacer pacer;
+    pacer_init(&pacer);
+    for (int64_t now_ns = NS_PER_S; now_ns < 10 * NS_PER_S; now_ns += 450 * MS) {
+        struct pacer_note note = { .moving = true, .counts = true, .made_ns = now_ns + 400 * MS };
+        pacer_asked(&pacer, now_ns);
+        uint32_t seq = pacer_sent(&pacer, 1000, &note, note.made_ns);
+        pacer_wrote(&pacer, true, note.made_ns);
+        pacer_acked(&pacer, seq, MS, note.made_ns + 40 * MS);
+    }
+    assert_true(pacer.ladder.made.index > 0);
 }
 
 /* A plant whose pictures take seconds: the size goes down, although seconds pass between two pictures. */

@@ -244,7 +244,7 @@ function tell(text, ms = TOAST_MS) {
 // Returns true if the user has changed nothing since the page opened, so that the URL stays unchanged.
 const isUntouched = () => !location.hash && session.paramsSeq <= 1 && !moved && !selection.tag && session.time.atUs === null;
 
-let addressTimer;
+let addressTimer, addressTries = 0;
 function saveAddress() {
     if (isUntouched())
         return;
@@ -252,7 +252,9 @@ function saveAddress() {
     addressTimer = setTimeout(async () => {
         if (session.leader !== null)
             return; // leaves the URL unchanged, because it names the session to follow
-        const module = await import('../core/address.js').catch(() => null);
+        // browsers may remember a failed fetch of a URL forever, so each try after one has another URL
+        const module = await import(`../core/address.js${addressTries > 0 ? `?again=${addressTries}` : ''}`).catch(() => null);
+        addressTries += module ? 0 : 1;
         if (module) // else the server is away: the next change of the view tries again
             history.replaceState(null, '', location.pathname + location.search + module.addressOf(session, selection.tag));
     }, ADDRESS_WAIT_MS);

@@ -64,10 +64,8 @@ bool pacer_may_ask(const struct pacer *pacer, int64_t now_ns)
 void pacer_asked(struct pacer *pacer, int64_t now_ns)
 {
     assert(pacer->asked + pacer->flight_count < PACER_MOST);
-    if (pacer->asked == 0) {
+    if (pacer->asked == 0)
         pacer->owed_since_ns = now_ns;
-        pacer->owed_next = false;
-    }
     pacer->asked++;
 }
 
@@ -82,9 +80,8 @@ void pacer_dropped(struct pacer *pacer)
 static void measure_making(struct pacer *pacer, const struct pacer_note *note, int64_t now_ns)
 {
     if (note->counts && pacer->owed_since_ns && note->made_ns > pacer->owed_since_ns)
-        quality_ladder_on_made(&pacer->ladder, note->made_ns - pacer->owed_since_ns, pacer->owed_next, now_ns);
+        quality_ladder_on_made(&pacer->ladder, note->made_ns - pacer->owed_since_ns, now_ns);
     pacer->owed_since_ns = note->made_ns;
-    pacer->owed_next = true;
 }
 
 uint32_t pacer_sent(struct pacer *pacer, size_t bytes, const struct pacer_note *note, int64_t now_ns)

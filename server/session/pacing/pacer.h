@@ -32,10 +32,9 @@ struct pacer_flight {
 
 struct pacer {                              /* limits the frames under way to one client; initialise with pacer_init() */
     int asked;                              /* number of frames requested from the render service for the client and not sent yet */
-    /* monotonic time since which the render service has owed the client a frame: when the last frame was made (owed_next true),
-       or of the request if that came later; 0: not known */
+    /* monotonic time since which the render service has owed the client a frame: of the client's last frame, or of the request
+       if that came later; 0: not known */
     int64_t owed_since_ns;
-    bool owed_next;
     struct pacer_flight flight[PACER_MOST]; /* frames sent and not acknowledged, oldest first */
     int flight_count;
     uint32_t last_seq;

@@ -156,11 +156,11 @@ static void resume(struct quality_ladder *ladder, double took_ns, double easy_ns
     ladder->made_ns = took_ns;
 }
 
-void quality_ladder_on_made(struct quality_ladder *ladder, int64_t took_ns, bool busy, int64_t now_ns)
+void quality_ladder_on_made(struct quality_ladder *ladder, int64_t took_ns, int64_t now_ns)
 {
     double slack = ladder->reprojects ? REPROJECTED_SLACK : 1, slow_ns = slack * (double)SLOW_MADE_NS;
-    double sample_ns = fmin((double)took_ns, (busy ? MOST_MADE : 1) * slow_ns);
     int64_t idle_ns = now_ns - took_ns - ladder->made_at_ns;
+    double sample_ns = fmin((double)took_ns, (idle_ns < REST_NS ? MOST_MADE : 1) * slow_ns);
     struct picture_cost cost = { .hard_ns = (int64_t)slow_ns, .easy_ns = (int64_t)(slack * (double)FAST_MADE_NS), .fixed = MADE_FIXED };
     if (idle_ns >= IDLE_NS)
         resume(ladder, sample_ns, (double)cost.easy_ns);

@@ -53,10 +53,10 @@ int quality_ladder_common(const struct quality_ladder *seen, const int counts[QU
 int quality_ladder_step(const struct quality_ladder *ladder, int common);
 /* Records that the client acknowledged a preview of that quality step and size in bytes, and adjusts the ladder's step. */
 void quality_ladder_on_ack(struct quality_ladder *ladder, const struct channel *channel, int step, size_t bytes, int64_t now_ns);
-/* Records that the server took took_ns to make a preview, and adjusts the picture size. busy: true: since the client's last preview,
-   because the request was waiting by then; false: since the request. A single preview does not make pictures smaller, because
-   what takes long may be the change of the field for which it was requested. */
-void quality_ladder_on_made(struct quality_ladder *ladder, int64_t took_ns, bool busy, int64_t now_ns);
+/* Records that the server took took_ns to make a preview, and adjusts the picture size. This is the time since it began to owe
+   the client a preview: since the client's last one, or since the request if that came later. A preview after a rest does not make
+   pictures smaller, because what takes long may be the change of the field for which it was requested. */
+void quality_ladder_on_made(struct quality_ladder *ladder, int64_t took_ns, int64_t now_ns);
 /* Returns the expected size in bytes of a preview at the ladder's own step; 0: not known. */
 double quality_ladder_bytes(const struct quality_ladder *ladder);
 

@@ -138,8 +138,8 @@ static int add_row(struct propagation *propagation, uint32_t point, const struct
 }
 
 /* Returns the radius of the arc around which shortest paths bend at a point, from the `count` adjacent triangles around it: the
-   distance to its neighbours divided by the angle that exceeds a full turn, or at the border of the surface half a turn. At a
-   corner, with an excess of one radian or more, the radius is 0. */
+   distance to its neighbours divided by the angle that exceeds a full turn (at the border of the surface, half a turn), less that
+   distance. At a corner of the border, with an excess of one radian or more, the radius is 0. */
 static float bend_radius(const struct vertex_wedge *wedges, size_t count)
 {
     const struct end *first = &wedges[0].ends[0], *last = &wedges[count - 1].ends[1];
