@@ -18,10 +18,10 @@ static const int64_t SETTLE_NS = 500 * NS_PER_MS;
 /* decoding time of a frame, in nanoseconds, above which the client cannot keep up with 25 frames a second */
 static const int64_t SLOW_DECODE_NS = 40 * NS_PER_MS;
 static const int64_t FAST_DECODE_NS = 20 * NS_PER_MS;
-/* Time in nanoseconds that the server takes for a client's picture, above which pictures get smaller: fewer than 10 a second. A
+/* Time in nanoseconds that the server takes for a client's picture, above which pictures get smaller: fewer than 10.5 a second. A
    client that reprojects may get fewer by REPROJECTED_SLACK, 8 a second. */
-static const int64_t SLOW_MADE_NS = 100 * NS_PER_MS, FAST_MADE_NS = 90 * NS_PER_MS;
-static const double REPROJECTED_SLACK = 1.25;
+static const int64_t SLOW_MADE_NS = 95 * NS_PER_MS, FAST_MADE_NS = 86 * NS_PER_MS;
+static const double REPROJECTED_SLACK = 1.3;
 /* share of the server's work on a preview that does not depend on its size; measured on the demo plant in 1920x1080 and less */
 static const double MADE_FIXED = 0.25;
 enum { MOST_MADE = 3 }; /* a picture that took longer than this many times SLOW_MADE_NS counts as such: it waited for one long step */
