@@ -311,6 +311,25 @@ test('pictures wait for their depth, but not for a worker that does not answer',
     }
 });
 
+test('a page that draws slowly sends some twelve cameras a second while the warped picture is shown, and the last one', async () => {
+    const viewport = { frames: 0, invalidate() { this.frames++; } }, session = { cameraNews: true };
+    const warp = Object.create(Warp.prototype, { isWanted: { value: true, writable: true } });
+    Object.assign(warp, { session, viewport, isShown: true, mostPx: 250000, sentAt: -Infinity });
+    const sent = [];
+    for (let now = 1000; now < 2000; now += 16)
+        if (!warp.holdsCamera(now))
+            sent.push(now);
+    assert.ok(sent.length >= 12 && sent.length <= 13, `${sent.length} cameras in a second`);
+    assert.equal(sent[0], 1000, 'the first one is not delayed');
+    const last = sent.at(-1) + 79;
+    assert.equal(warp.holdsCamera(last), true);
+    assert.equal(viewport.frames, 0);
+    await new Promise((done) => { viewport.invalidate = done; }); // a frame is drawn for the last camera although nothing moves
+    assert.equal(warp.holdsCamera(last + 1), false);
+    for (const change of [{ mostPx: Infinity }, { isShown: false }, { isWanted: false }, { session: { cameraNews: false } }])
+        assert.equal(Object.assign(Object.create(warp), change, { sentAt: last }).holdsCamera(last + 1), false, Object.keys(change)[0]);
+});
+
 // Returns an object with the members of Warp that decide whether a picture is warped: a picture of 1280x720 whose camera the user
 // has moved a little. in the session, fly: the camera's flight, or null.
 function ahead({ fly = null, source = { camera: PERSPECTIVE }, ...session } = {}) {

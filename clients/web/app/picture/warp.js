@@ -16,6 +16,9 @@ const NEAREST = 0.05;
 // If the median interval of SLOW_COUNT drawn frames is longer than SLOW_MS, as without a GPU, the warped picture is drawn with
 // half as many pixels, but at least LEAST_PX. Intervals of PAUSE_MS or more are pauses and do not count.
 const SLOW_MS = 26, SLOW_COUNT = 8, PAUSE_MS = 150, LEAST_PX = 250000;
+// If frames are drawn slowly, cameras are sent at this interval in milliseconds while the warped picture is shown. Fewer pictures
+// of the server then leave the processor more time to warp them.
+const SEND_MS = 80;
 
 const FADE_MS = 80; // time in milliseconds in which the warped picture fades to the server's picture
 const LATE_MS = 1000; // if the worker that decodes depth grids is silent for this long, pictures are shown without waiting for it
@@ -31,7 +34,8 @@ const GL = { antialias: false, powerPreference: 'high-performance' };
 
 export class Warp {
     constructor({ session, viewport, modules }) {
-        Object.assign(this, { session, viewport, modules, updates: 0, mostPx: Infinity, intervals: [], last: 0, count: 0 });
+        Object.assign(this, { session, viewport, modules, updates: 0, mostPx: Infinity, intervals: [], last: 0, count: 0,
+            sentAt: -Infinity });
         // time (performance.now(), milliseconds) since which decoded pictures have waited for the worker that decodes their
         // depth grids; null: they do not wait
         this.waitsFrom = null;
@@ -251,6 +255,20 @@ export class Warp {
         this.painter.load(held?.frame.seq === source.picture.seq ? held.picture : viewport.canvas, source.parts);
         this.loaded = source;
         return true;
+    }
+
+    // Returns true if the session's newest camera is to be sent later; the viewport is then asked for another frame by that time.
+    holdsCamera(now) {
+        const { session, viewport } = this;
+        clearTimeout(this.sending);
+        if (!session.cameraNews)
+            return false;
+        const wait = this.isShown && this.mostPx < Infinity && this.isWanted ? this.sentAt + SEND_MS - now : 0;
+        if (wait > 0)
+            this.sending = setTimeout(() => viewport.invalidate(), wait);
+        else
+            this.sentAt = now;
+        return wait > 0;
     }
 
     // Chooses the size of the warped drawing: that of the picture, or less if frames are drawn slowly.

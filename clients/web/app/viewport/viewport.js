@@ -107,7 +107,8 @@ export class Viewport {
         requestAnimationFrame((now) => {
             this.scheduled = false;
             this.onTick(now);
-            this.session.flush();
+            if (!this.warp?.holdsCamera(now))
+                this.session.flush();
             this.draw();
         });
     }
