@@ -45,7 +45,7 @@ struct modbus_device { /* tests may set the following members before the start o
     _Atomic int requests, refused, connections;
     _Atomic int functions;               /* function codes requested so far: bit f stands for code f */
     _Atomic int most;                    /* largest number of registers or bits in one request so far */
-    /* last_ns: time of the last answer; least_gap_ns: shortest time so far between an answer and the next request; 0: there was
+    /* last_ns: time just before the last answer; least_gap_ns: shortest time so far between an answer and the next request; 0: there was
        none */
     _Atomic int64_t last_ns, least_gap_ns;
     enum device_wire wire;               /* transport; set it before the start; with RTU the device is unit 1 only */
