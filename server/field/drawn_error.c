@@ -32,7 +32,6 @@ enum { MOST_SAMPLES = 10000000 };
 /* for interpolation paper (Algorithm 1 of Kim & Suh): longest side of a triangle that needs no samples, as a fraction of the
    distance to the nearest sensor and of the radius R */
 #define PAPER_ACCEPTED 0.015f
-#define STEP_OF_COLOR (1 / 255.0f)
 /* largest accepted error of SHOW_BLIND, as a fraction of the colour scale. It grows so fast with distance that linear
    interpolation is a colour step off on most triangles. */
 #define BLIND_ACCEPTED 0.1f
@@ -78,6 +77,7 @@ struct drawn_error_job {
     uint32_t first;       /* index of the first triangle whose interpolation error to measure */
     /* [n]: number of the level's triangles that need about n samples (samples_of()) */
     atomic_size_t needing[MAX_PIECES + 1];
+    bool has_border;      /* somewhere there is no data: sensors reach a limited distance, or a sensor is lost */
     int most_pieces;      /* triangles that need more samples than this get a bound instead; MAX_PIECES: all are sampled */
     float *errors;        /* interpolation error of each triangle */
     float *ridges;        /* error of values in each triangle where paths from two sides meet; NULL: not measured */
@@ -433,12 +433,10 @@ static void choose_sampled(struct drawn_error_job *job)
 
 /* Returns whether a frame might show data inside the triangle where the field has none. The distance beyond the border of the data
    changes by at most two metres per metre, but not steadily at the border of the surroundings of a sensor without limits. */
-static bool may_hide_rim(const struct weights *weights, const uint32_t corners[3], float longest_m)
+static bool may_hide_rim(const struct drawn_error_job *job, const uint32_t corners[3], float longest_m)
 {
+    const struct weights *weights = job->weights;
     float least = 255, most = 0;
-    bool has_border = weights->reach_m < INFINITY;
-    for (size_t i = 0; i < weights->layout->sensor_count && !has_border; i++)
-        has_border = weights->configured[i] && !weights->takes_part[i];
     for (int k = 0; k < 3; k++) {
         if (weights->place[corners[k]] == PLACE_NO_LIMITS)
             return true;
@@ -446,14 +444,14 @@ static bool may_hide_rim(const struct weights *weights, const uint32_t corners[3
         least = fminf(least, lacking);
         most = fmaxf(most, lacking);
     }
-    return has_border && least <= 127 && most + 2 * longest_m * weights->steps_per_m > 127 + BORDER_SLACK;
+    return job->has_border && least <= 127 && most + 2 * longest_m * weights->steps_per_m > 127 + BORDER_SLACK;
 }
 
 /* Returns a bound on the interpolation error inside a triangle (SHEPARD_ACCEPTED); 1: none is known. */
 static float bound_of(const struct drawn_error_job *job, const uint32_t corners[3], const struct triangle_extent *extent)
 {
     const float away_m = extent->near_m - extent->longest_m;
-    if (!job->near && may_hide_rim(job->weights, corners, extent->longest_m))
+    if (!job->near && may_hide_rim(job, corners, extent->longest_m))
         return WEIGHTS_SHOWS_NO_DATA;
     if (job->near || job->weights->interpolation != INTERPOLATION_SHEPARD || !(away_m > 0))
         return 1;
@@ -610,9 +608,18 @@ static void measure_ridges(void *arg, size_t begin, size_t end)
     ridges_measure(&(struct ridge_job){ job->weights, job->errors, job->ridges }, job->first + begin, job->first + end);
 }
 
+static bool loses_sensor(const struct weights *weights)
+{
+    for (size_t i = 0; i < weights->layout->sensor_count; i++)
+        if (weights->configured[i] && !weights->takes_part[i])
+            return true;
+    return false;
+}
+
 /* Measures the errors of interpolation, and those at ridges, in the triangles of one level of detail. */
 static void measure_triangles(struct drawn_error_job *job, const struct asset_level *level, struct workers *workers)
 {
+    job->has_border = job->weights->reach_m < INFINITY || loses_sensor(job->weights);
     memset(job->needing, 0, sizeof(job->needing));
     for_triangles(job, level, workers, GRAIN, count_samples);
     choose_sampled(job);
@@ -678,10 +685,7 @@ static bool is_constant(const struct weights *weights)
 {
     if (weights->member_count != 1 || weights->interpolation != INTERPOLATION_SHEPARD || weights->reach_m < INFINITY)
         return false;
-    for (size_t i = 0; i < weights->layout->sensor_count; i++)
-        if (weights->configured[i] && !weights->takes_part[i])
-            return false;
-    return true;
+    return !loses_sensor(weights);
 }
 
 /* Returns true if the subdivision chosen in preparation suffices (preprocess/subdivision/linear_error.h), because the weights
@@ -696,9 +700,8 @@ static bool is_as_prepared(const struct weights *weights, const struct field_par
     /* false: this group's field is evaluated at each pixel of a picture, so preparation subdivided no triangle for it */
     if (plant_group_is_exact(group))
         return false;
-    for (size_t i = 0; i < layout->sensor_count; i++)
-        if (weights->configured[i] && !weights->takes_part[i])
-            return false;
+    if (loses_sensor(weights))
+        return false;
     if (params->interpolation == INTERPOLATION_SHEPARD)
         return params->power == group->power;
     return params->strength == 1 && params->decay == 1 && params->radius_m == group->radius_m &&

@@ -39,6 +39,7 @@ struct weights_key { /* key of cached weights: the bytes of everything on which 
 /* element of weights->errors of a triangle that shows data where the field has none, for weights that are not prepared; their
    errors of values are smaller */
 #define WEIGHTS_SHOWS_NO_DATA 4.0f
+#define STEP_OF_COLOR (1 / 255.0f) /* errors below a step of the 8-bit colour scale are not seen */
 
 enum { WEIGHTS_ERRING = 9 }; /* number of error thresholds for which area or vertices are counted: 1, 1/2, 1/4 ... 1/256 of the
                                 range; the last is about one colour step */

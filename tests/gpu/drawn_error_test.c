@@ -593,15 +593,29 @@ TEST(test_wild_readings_after_usual_ones_are_measured)
     assert_float_equal(error_of_wild_readings(true), error, 1e-6 * error);
 }
 
-static int count_marked(const struct stand *stand, const struct view *view)
+/* Returns the number of pixels with data that are marked uncertain. *shown: receives the number of all pixels with data. */
+static int count_marked(const struct stand *stand, const struct view *view, int *shown)
 {
     float(*measured)[4] = mem_array(PIXELS, sizeof(*measured));
     int marked = 0;
+    *shown = 0;
     assert_true(renderer_measure(stand->renderer, view, stand->snapshot, true, measured));
-    for (int i = 0; i < PIXELS; i++)
-        marked += measured[i][1] >= 0 && measured[i][1] <= 0.5f && measured[i][2] > 0.5f;
+    for (int i = 0; i < PIXELS; i++) {
+        bool has_data = measured[i][1] >= 0 && measured[i][1] <= 0.5f;
+        *shown += has_data;
+        marked += has_data && measured[i][2] > 0.5f;
+    }
     mem_free(measured);
     return marked;
+}
+
+/* A plate of needles with distances along the surface and readings that alternate between 10 and 90. */
+static void stand_on_uneven_plate(struct stand *stand, struct view *view)
+{
+    stand_on_plate(stand, view, 0);
+    view->field.distance = DISTANCE_GEODESIC;
+    for (int i = 0; i < MANY; i++)
+        toy_set(stand->snapshot, i, i % 2 ? 90 : 10, QUALITY_GOOD);
 }
 
 /* If memory runs out while errors are measured, pictures and picks mark the whole asset. */
@@ -610,20 +624,12 @@ TEST(test_without_memory_for_errors_all_is_marked)
     struct stand stand;
     struct view view;
     struct pick pick;
-    stand_on_plate(&stand, &view, 0);
-    view.field.distance = DISTANCE_GEODESIC;
-    for (int i = 0; i < MANY; i++)
-        toy_set(stand.snapshot, i, i % 2 ? 90 : 10, QUALITY_GOOD);
+    stand_on_uneven_plate(&stand, &view);
     missing_elements = stand.toy->scene.assets[0].file->view.header->index_count / 3;
-    int marked = count_marked(&stand, &view), shown = 0;
+    int shown, marked = count_marked(&stand, &view, &shown);
     struct frame *frame = stand_draw(&stand, &view);
     pick_at(&stand.toy->scene, stand.field, &view, stand.snapshot, WIDTH_PX / 2.0, HEIGHT_PX / 2.0, &pick);
     missing_elements = 0;
-    float(*measured)[4] = mem_array(PIXELS, sizeof(*measured));
-    assert_true(renderer_measure(stand.renderer, &view, stand.snapshot, true, measured));
-    for (int i = 0; i < PIXELS; i++)
-        shown += measured[i][1] == 0;
-    mem_free(measured);
     assert_true(marked > 1000 && marked == shown);
     assert_true(pick.asset == 0 && pick.drawn_error > 0 && frame->drawn_error >= 80);
     frame_unref(&frame);
@@ -636,13 +642,10 @@ TEST(test_a_field_per_fragment_marks_long_triangles)
 {
     struct stand stand;
     struct view view;
-    stand_on_plate(&stand, &view, 0);
-    view.field.distance = DISTANCE_GEODESIC;
-    for (int i = 0; i < MANY; i++)
-        toy_set(stand.snapshot, i, i % 2 ? 90 : 10, QUALITY_GOOD);
-    int at_vertices = count_marked(&stand, &view);
+    stand_on_uneven_plate(&stand, &view);
+    int shown, at_vertices = count_marked(&stand, &view, &shown);
     renderer_set_per_fragment(stand.renderer, true);
-    int per_fragment = count_marked(&stand, &view);
+    int per_fragment = count_marked(&stand, &view, &shown);
     print_message("# %d pixels are marked, %d with a field per fragment\n", at_vertices, per_fragment);
     assert_true(at_vertices > 1000 && per_fragment >= at_vertices);
     stand_finish(&stand);
