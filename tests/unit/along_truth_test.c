@@ -459,7 +459,7 @@ static void compare_prepared(struct prep_case *c, const char *distance)
         cad_finish(&shapes[i].cad);
     /* the limits of server/render/ACCURACY.md: errors of distances are not marked for these powers */
     assert_true(all.picks_bare <= MOST_BARE * all.places && all.drawn_bare <= MOST_BARE * all.places);
-    /* largest of twelve seeds: 1.8 steps; with a lost sensor 2.6 */
+    /* the largest of eight seeds: 1.8 steps, or 2.6 with a lost sensor */
     assert_true(all.worst_pick <= 3 * STEP && all.worst_drawn <= 3 * STEP);
 }
 

@@ -8,11 +8,8 @@
 #include "session/pacing/channel.h"
 #include "session/pacing/picture_size.h"
 
-enum {
-    QUALITY_LADDER_STEPS = 9,
-    QUALITY_LADDER_FIRST = 3 /* index of the initial step, used until the client's bandwidth is
-                                                             known */
-};
+/* QUALITY_LADDER_FIRST: index of the initial step, used until the client's bandwidth is known */
+enum { QUALITY_LADDER_STEPS = 9, QUALITY_LADDER_FIRST = 3 };
 
 struct rung {
     int quality;

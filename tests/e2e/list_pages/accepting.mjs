@@ -79,7 +79,7 @@ test('the filter shows how many locations would be accepted and why others are n
     assert.equal(assumed(), ASSUMED, 'nothing is written before the confirmation');
 });
 
-test('accepting a hundred locations writes one list and one audit line, and leaves the other rows unchanged', options, async () => {
+test('accepting many locations writes one list and one audit line, and leaves the other rows unchanged', options, async () => {
     await page.locator('#engineer .accept select').selectOption('');
     await page.getByPlaceholder('Name or description').fill('');
     const sure = count((i) => isSure(i) && !isOff(i));
