@@ -52,6 +52,7 @@ struct reload {
     uint64_t answers;              /* number of the newest request that the running reload answers; 0: it answers none */
     char *failure;                 /* reason why the last reload that failed did so; NULL: none failed yet */
     char *unmatched;               /* last reported reason why this node has not got its core's files; NULL: none */
+    char *refused;                 /* errors of the last refused reload with the core's files; NULL: none since they became equal */
     bool matching;                 /* true: the running reload is an attempt to get the core's files, which record_match() records */
     int failed_matches;            /* number of failed attempts to get the core's files since the last success */
     _Atomic bool stops;            /* true: the daemon ends, so a transfer of a tag list must end */
@@ -165,9 +166,28 @@ static void answer(struct reload *reload, bool good, json_t *object)
     mem_free(text);
 }
 
+/* Returns the level at which a refusal is logged. Nobody requests a repeated attempt to get the core's files, so its errors are
+   logged as errors only if they differ from those of the attempt before. */
+static enum log_level refusal_level(struct reload *reload, const struct diag *diag, const char *why)
+{
+    struct text errors = { 0 };
+    if (!reload->matching)
+        return LOG_ERROR;
+    for (size_t i = 0; i < diag->count; i++)
+        if (diag->items[i].severity == DIAG_ERROR)
+            text_add(&errors, "%s: %s\n", diag->items[i].file, diag->items[i].text);
+    text_add(&errors, "%s\n", why ? why : "");
+    bool repeated = reload->refused && text_equal_but_numbers(errors.at, reload->refused);
+    mem_free(reload->refused);
+    reload->refused = mem_strdup(errors.at);
+    text_finish(&errors);
+    return repeated ? LOG_DEBUG : LOG_ERROR;
+}
+
 static void refuse(struct reload *reload, const struct diag *diag, const char *why)
 {
     struct log *log = reload->context->log;
+    enum log_level level = refusal_level(reload, diag, why);
     json_t *errors = json_array();
     mem_free(reload->failure);
     reload->failure = mem_strdup(why ? why : "the plant has errors; the log says which");
@@ -176,13 +196,13 @@ static void refuse(struct reload *reload, const struct diag *diag, const char *w
         if (item->severity != DIAG_ERROR)
             continue;
         char *line = mem_printf("%s:%d:%d: %s", item->file, item->line, item->column, item->text);
-        log_err(log, "reload: %s", line);
+        log_at(log, level, "reload: %s", line);
         json_array_append_new(errors, json_string(line));
         mem_free(line);
     }
     if (why)
         json_array_append_new(errors, json_string(why));
-    log_event(log, LOG_ERROR, EVENT_RELOAD_REFUSED, "reload: refused, so the daemon keeps the configuration %s%s%s",
+    log_event(log, level, EVENT_RELOAD_REFUSED, "reload: refused, so the daemon keeps the configuration %s%s%s",
               (*reload->runtime)->plant->files.hash, why ? ": " : "", why ? why : "");
     answer(reload, false,
            json_pack("{s:b,s:s,s:o}", "reloaded", false, "configuration", (*reload->runtime)->plant->files.hash, "errors", errors));
@@ -586,8 +606,6 @@ static void record_match(struct reload *reload, const char *why)
 /* Logs and reports why this node has not got its core's files; takes ownership of `why`. NULL: this node has them. */
 static void report_unmatched(struct reload *reload, char *why)
 {
-    if (!why)
-        reload->failed_matches = 0;
     if (why && is_new_cause(reload, why))
         log_err(reload->context->log, "core: this node has not got its core's files: %s", why);
     pthread_mutex_lock(&reload->put_lock);
@@ -595,6 +613,13 @@ static void report_unmatched(struct reload *reload, char *why)
     if (why && link && reload->context->params->role == SERVER_CORE)
         core_link_report_files(link, why);
     pthread_mutex_unlock(&reload->put_lock);
+    if (!why) {
+        if (link && reload->unmatched)
+            log_info(reload->context->log, "core: this node has got its core's files, after %d failed attempts", reload->failed_matches);
+        reload->failed_matches = 0;
+        mem_free(reload->refused);
+        reload->refused = NULL;
+    }
     mem_free(reload->unmatched);
     reload->unmatched = why;
 }
@@ -942,6 +967,7 @@ void reload_destroy(struct reload **pointer)
     pthread_mutex_destroy(&reload->put_lock);
     mem_free(reload->failure);
     mem_free(reload->unmatched);
+    mem_free(reload->refused);
     mem_free(reload);
     *pointer = NULL;
 }

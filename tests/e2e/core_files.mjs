@@ -42,7 +42,7 @@ before(async () => {
             core.file = copyPlant(made.file, join(made.plant.folder, core.name, 'plant'));
             const folder = dirname(core.file);
             core.trail = join(made.plant.folder, core.name, 'audit.log');
-            core.args = ['--audit', core.trail];
+            core.args = ['--audit', core.trail, '--log-level', 'debug']; // repeated refusals are logged at this level
             core.before = ['sh', '-c', `mount --bind ${folder} ${folder} && exec "$@"`, 'sh']; // so that a test can make it read-only
         }
     });
@@ -154,7 +154,9 @@ test('a standby that cannot write says so, and gets the list once it can', optio
     assert.equal(await core.node.metric('plantcast_core_standby_differing_files'), 1);
     assert.equal(list(other), before_);
     assert.deepEqual(files(other), names);
-    await until('a second attempt', () => other.program.said.match(/reload: refused/g)?.length > 1);
+    const said = () => other.program.said, refusals = () => said().match(/^.*reload: refused.*$/gm) ?? [];
+    await until('a second attempt', () => refusals().some((line) => line.includes('debug')));
+    assert.deepEqual(refusals().map((line) => line.match(/ (error|debug) /)?.[1]).slice(0, 2), ['error', 'debug'], said());
     remount('rw');
     await learns(core, isSame);
     assert.equal(list(other), list(core));
@@ -165,6 +167,8 @@ test('a standby that cannot write says so, and gets the list once it can', optio
     assert.equal(done.result, 'done');
     assert.match(done.what, /configuration \w{16} is active, after ([2-9]|\d\d) failed attempts$/);
     assert.deepEqual(more, []);
+    assert.equal(refusals().filter((line) => line.includes(' error ')).length, 1, said());
+    await other.program.line(/core: this node has got its core's files, after ([2-9]|\d\d) failed attempts/);
 });
 
 test('a list that was edited on the standby is not overwritten', options, async () => {
