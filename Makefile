@@ -192,7 +192,7 @@ $(out)/lib/$(1).a: $(call objects,$(filter-out $(without),$(wildcard $(foreach d
 endef
 $(foreach l,$(layers),$(eval $(call archive_rule,$(l))))
 # Loops of the software rasterizer, compiled again for AVX2 (`wide`) and for AVX-512 (`widest`); see render/soft/kernels.h.
-wide_names := faces feature_edges kernels pixel_lists raster resolve resolve_field resolve_preview resolve_surfaces
+wide_names := depth_cells faces feature_edges kernels pixel_lists raster resolve resolve_field resolve_preview resolve_surfaces
 wide_sources := $(wide_names:%=server/render/soft/%.c)
 wide_objects := $(foreach w,wide widest,$(patsubst %.c,$(out)/obj/%.$(w).o,$(wide_sources)))
 $(out)/lib/render.a: $(if $(filter x86_64%,$(shell $(CC) -dumpmachine 2>/dev/null)),$(wide_objects))

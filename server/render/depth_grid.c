@@ -83,7 +83,7 @@ void depth_lens_init(struct depth_lens *lens, const struct view_constants *const
 }
 
 /* Returns the depth of the ground at a pixel. Returns -INFINITY if no ground is seen there, or if it is farther than 1 / LEAST_INVERSE. */
-static float ground_at(const struct depth_lens *lens, double x, double y)
+static inline float ground_at(const struct depth_lens *lens, double x, double y)
 {
     double at[3];
     if (!lens->has_ground)
@@ -93,22 +93,30 @@ static float ground_at(const struct depth_lens *lens, double x, double y)
     if (at[2] <= 0 || at[0] < 0 || at[1] < 0 || at[0] > at[2] || at[1] > at[2])
         return -INFINITY;
     double depth = lens->ground[0] * x + lens->ground[1] * y + lens->ground[2];
-    return lens->orthographic || (depth - lens->offset) / lens->factor > LEAST_INVERSE ? (float)depth : -INFINITY;
+    /* (depth - offset) / factor > LEAST_INVERSE, without a division */
+    bool near = lens->orthographic || (depth - lens->offset - LEAST_INVERSE * lens->factor) * lens->factor > 0;
+    return near ? (float)depth : -INFINITY;
 }
 
 /* --- codes ------------------------------------------------------------------------------------------------------------------- */
+
+struct divided_cell { /* cell that contains a depth step */
+    uint32_t index;
+    uint16_t row, column;
+};
 
 struct coder {
     const struct depth_cell *cells;
     const struct depth_lens *lens;
     int width_px, height_px, columns, rows;
-    float *nears, *fars; /* depths; -INFINITY: background */
-    /* by cell: 1: the ground is in front of the surface in the cell; the near and far depth are then swapped, and the cell's
-       mask must be inverted */
-    uint8_t *swapped;
-    uint16_t *near, *far, *masks; /* masks: of divided cells */
+    /* depths; -INFINITY: background. They lie in the memory of `data`, which is written only after the codes are known */
+    float *nears, *fars;
+    uint16_t *near, *far;         /* depth codes */
+    uint16_t *symbols;            /* differences of a row of codes from their predictions, as they are written */
+    struct divided_cell *divided; /* row by row */
+    uint16_t *masks;              /* coarse masks of divided cells, at the index of the cell */
+    size_t divided_count;
     uint8_t *data;
-    size_t data_bytes;
     /* depths are quantised to codes; low: depth with the code 1; unit: difference in depth between one code and the next */
     float low, unit;
     int levels;
@@ -116,22 +124,23 @@ struct coder {
 
 static bool coder_init(struct coder *coder)
 {
-    size_t count = (size_t)coder->columns * (size_t)coder->rows;
-    coder->nears = mem_try_array(2 * count, sizeof(*coder->nears));
-    coder->near = mem_try_array(3 * count, sizeof(*coder->near));
-    coder->swapped = mem_try_array(count, 1);
-    coder->data = mem_try_array(count, 1 + 2 * MOST_SYMBOL_BYTES + MASK_BYTES);
+    enum { DATA_BYTES = 1 + 2 * MOST_SYMBOL_BYTES + MASK_BYTES, DEPTH_BYTES = 2 * sizeof(float) };
+    size_t columns = (size_t)coder->columns, count = columns * (size_t)coder->rows;
+    coder->near = mem_try_array(3 * count + columns, sizeof(*coder->near));
+    coder->divided = mem_try_array(count, sizeof(*coder->divided));
+    coder->data = mem_try_array(count, DATA_BYTES > DEPTH_BYTES ? DATA_BYTES : DEPTH_BYTES);
+    coder->nears = (float *)(void *)coder->data;
     coder->fars = coder->nears + count;
     coder->far = coder->near + count;
     coder->masks = coder->far + count;
-    return coder->nears && coder->near && coder->swapped && coder->data;
+    coder->symbols = coder->masks + count;
+    return coder->near && coder->divided && coder->data;
 }
 
 static void coder_finish(struct coder *coder)
 {
-    mem_free(coder->nears);
     mem_free(coder->near);
-    mem_free(coder->swapped);
+    mem_free(coder->divided);
     mem_free(coder->data);
 }
 
@@ -143,114 +152,46 @@ static double middle(int cell, int px)
     return 0.5 * (begin + (end < px ? end : px));
 }
 
-/* Replaces the background in depth grid cells with the ground's depth: as the far depth behind the cell's surface, or as the
-   cell's only depth. Then finds the depth range of all cells. */
-static void find_depths(struct coder *coder)
+/* Computes the depths of a row of cells. Replaces the background with the ground's depth: as the far depth behind the cell's
+   surface, or as the cell's only depth. If the ground is in front of the surface, swaps the two depths. */
+static void find_depths(const struct coder *coder, int row)
+{
+    size_t first = (size_t)row * (size_t)coder->columns;
+    const struct depth_cell *cells = coder->cells + first;
+    float *nears = coder->nears + first, *fars = coder->fars + first;
+    double y = middle(row, coder->height_px);
+    for (int column = 0; column < coder->columns; column++) {
+        float near = cells[column].near, far = cells[column].far;
+        if (far <= 0) {
+            float ground = ground_at(coder->lens, middle(column, coder->width_px), y);
+            far = ground;
+            near = near > 0 ? near : ground;
+        }
+        nears[column] = near > far ? near : far;
+        fars[column] = near < far ? near : far;
+    }
+}
+
+/* Finds the depth range of all cells, and how depths are quantised to codes. */
+static void find_range(struct coder *coder)
 {
     float low = INFINITY, high = -INFINITY;
     double sum = 0;
-    size_t i = 0, count = 0;
-    for (int row = 0; row < coder->rows; row++)
-        for (int column = 0; column < coder->columns; column++, i++) {
-            const struct depth_cell *cell = &coder->cells[i];
-            float near = cell->near, far = cell->far;
-            if (far <= 0) {
-                float ground = ground_at(coder->lens, middle(column, coder->width_px), middle(row, coder->height_px));
-                far = ground;
-                near = near > 0 ? near : ground;
-            }
-            coder->swapped[i] = far > near;
-            coder->nears[i] = far > near ? far : near;
-            coder->fars[i] = far > near ? near : far;
-            if (coder->nears[i] == -INFINITY)
-                continue;
-            high = coder->nears[i] > high ? coder->nears[i] : high;
-            near = coder->fars[i] > -INFINITY ? coder->fars[i] : coder->nears[i];
-            low = near < low ? near : low;
-            sum += coder->nears[i];
-            count++;
-        }
-    coder->low = count ? low : 0;
-    double mean = count ? sum / (double)count : 0, unit = coder->lens->least_step + coder->lens->step * mean;
+    size_t seen = 0, count = (size_t)coder->columns * (size_t)coder->rows;
+    for (size_t i = 0; i < count; i++) {
+        float near = coder->nears[i], far = coder->fars[i], least = far > -INFINITY ? far : near;
+        bool shows = near > -INFINITY;
+        high = near > high ? near : high;
+        low = shows && least < low ? least : low;
+        sum += shows ? (double)near : 0;
+        seen += shows;
+    }
+    coder->low = seen ? low : 0;
+    double mean = seen ? sum / (double)seen : 0, unit = coder->lens->least_step + coder->lens->step * mean;
     unit *= UNIT_SHIFT_PX / STEP_SHIFT_PX;
-    double levels = count && high > low && unit > 0 ? ceil((high - low) / unit) + 1 : 1;
+    double levels = seen && high > low && unit > 0 ? ceil((high - low) / unit) + 1 : 1;
     coder->levels = levels > MOST_LEVELS ? MOST_LEVELS : (int)levels;
     coder->unit = coder->levels > 1 ? (high - low) / (float)(coder->levels - 1) : 1;
-}
-
-static void find_codes(struct coder *coder)
-{
-    size_t count = 2 * (size_t)coder->columns * (size_t)coder->rows;
-    float low = coder->low, per_unit = 1 / coder->unit, most = (float)coder->levels;
-    for (size_t i = 0; i < count; i++) {
-        float depth = coder->nears[i], code = depth == -INFINITY ? 0 : (depth - low) * per_unit + 1.5f;
-        coder->near[i] = (uint16_t)(code > most ? most : code);
-    }
-}
-
-/* --- bytes ------------------------------------------------------------------------------------------------------------------- */
-
-static inline uint8_t *put_symbol(uint8_t *out, int code, int predicted)
-{
-    int by = code - predicted;
-    unsigned symbol = by >= 0 ? 2 * (unsigned)by : 2 * (unsigned)-by - 1;
-    if (symbol < ESCAPE) {
-        *out++ = (uint8_t)symbol;
-        return out;
-    }
-    out[0] = ESCAPE;
-    out[1] = (uint8_t)code;
-    out[2] = (uint8_t)(code >> 8);
-    return out + MOST_SYMBOL_BYTES;
-}
-
-static uint8_t *put_divided(const struct coder *coder, uint8_t *out)
-{
-    size_t count = (size_t)coder->columns * (size_t)coder->rows, bytes = (count + 7) / 8;
-    memset(out, 0, bytes);
-    for (size_t i = 0; i < count; i++)
-        out[i / 8] |= (uint8_t)((coder->near[i] != coder->far[i]) << i % 8);
-    return out + bytes;
-}
-
-/* Predicts a cell's depth code as the median of three values (LOCO-I; Weinberger et al., 2000): the code to the left, the code
-   above, and the code that continues the plane through these two and the upper left one. */
-static inline int predicted_back(int left, int up, int corner)
-{
-    if (!left || !up || !corner)
-        return left ? left : up;
-    int least = left < up ? left : up, most = left < up ? up : left;
-    return corner >= most ? least : corner <= least ? most : left + up - corner;
-}
-
-/* Writes the far code (depth code of the farthest surface) of each cell, as its difference from a prediction from the codes of
-   the left, upper and upper left cells. */
-static uint8_t *put_back(const struct coder *coder, uint8_t *out)
-{
-    int columns = coder->columns;
-    for (int row = 0; row < coder->rows; row++) {
-        const uint16_t *here = coder->far + (size_t)row * (size_t)columns, *above = row ? here - columns : NULL;
-        for (int c = 0; c < columns; c++)
-            out = put_symbol(out, here[c], predicted_back(c ? here[c - 1] : 0, above ? above[c] : 0, c && above ? above[c - 1] : 0));
-    }
-    return out;
-}
-
-/* Writes the near code (depth code of the nearer side) of each cell that contains a depth step. The prediction is the first of
-   the left, upper and upper left neighbours' near codes that is nearer than the cell's far side. */
-static uint8_t *put_near(const struct coder *coder, uint8_t *out)
-{
-    size_t i = 0, columns = (size_t)coder->columns;
-    const uint16_t *near = coder->near;
-    for (int row = 0; row < coder->rows; row++)
-        for (int c = 0; c < coder->columns; c++, i++) {
-            int back = coder->far[i];
-            if (near[i] == back)
-                continue;
-            int left = c ? near[i - 1] : 0, up = row ? near[i - columns] : 0, corner = c && row ? near[i - columns - 1] : 0;
-            out = put_symbol(out, near[i], left > back ? left : up > back ? up : corner > back ? corner : back);
-        }
-    return out;
 }
 
 /* Reduces a cell's mask, which has one bit per pixel, to MASK_SIDE x MASK_SIDE bits. A bit is 1 if at least one of 2 x 2 pixels
@@ -269,6 +210,115 @@ static unsigned coarse_mask(uint64_t mask)
     return (unsigned)((mask | mask >> 24) & 0xffff);
 }
 
+static void quantise(const struct coder *coder, const float *restrict depths, uint16_t *restrict codes)
+{
+    size_t count = (size_t)coder->columns * (size_t)coder->rows;
+    float low = coder->low, per_unit = 1 / coder->unit, most = (float)coder->levels;
+    for (size_t i = 0; i < count; i++) {
+        float code = (depths[i] - low) * per_unit + 1.5f;
+        code = code > most ? most : code;
+        codes[i] = (uint16_t)(int)(depths[i] == -INFINITY ? 0 : code);
+    }
+}
+
+/* Finds the codes of all cells, and the masks of the divided ones. */
+static void find_codes(struct coder *coder)
+{
+    quantise(coder, coder->nears, coder->near);
+    quantise(coder, coder->fars, coder->far);
+    /* without a branch for each cell, because processors predict badly which cells are divided */
+    size_t i = 0, count = 0;
+    for (int row = 0; row < coder->rows; row++)
+        for (int column = 0; column < coder->columns; column++, i++) {
+            coder->divided[count] = (struct divided_cell){ (uint32_t)i, (uint16_t)row, (uint16_t)column };
+            count += coder->near[i] != coder->far[i];
+        }
+    for (size_t d = 0; d < count; d++) {
+        i = coder->divided[d].index;
+        uint64_t mask = coder->cells[i].mask;
+        bool swapped = coder->nears[i] != coder->cells[i].near;
+        coder->masks[i] = (uint16_t)coarse_mask(swapped ? ~mask : mask);
+    }
+    coder->divided_count = count;
+}
+
+/* --- bytes ------------------------------------------------------------------------------------------------------------------- */
+
+/* Returns the difference of a code from its prediction, without sign: 0, -1, 1, -2 ... become 0, 1, 2, 3 ... */
+static inline unsigned symbol_of(int code, int predicted)
+{
+    int by = code - predicted;
+    return (unsigned)(2 * by ^ by >> 31);
+}
+
+static inline uint8_t *put_symbol(uint8_t *out, unsigned symbol, int code)
+{
+    if (symbol < ESCAPE) {
+        *out++ = (uint8_t)symbol;
+        return out;
+    }
+    out[0] = ESCAPE;
+    out[1] = (uint8_t)code;
+    out[2] = (uint8_t)(code >> 8);
+    return out + MOST_SYMBOL_BYTES;
+}
+
+static uint8_t *put_divided(const struct coder *coder, uint8_t *out)
+{
+    size_t count = (size_t)coder->columns * (size_t)coder->rows, bytes = (count + 7) / 8;
+    memset(out, 0, bytes);
+    for (size_t d = 0; d < coder->divided_count; d++)
+        out[coder->divided[d].index / 8] |= (uint8_t)(1 << coder->divided[d].index % 8);
+    return out + bytes;
+}
+
+/* Predicts a cell's depth code as the median of three values (LOCO-I; Weinberger et al., 2000): the code to the left, the code
+   above, and the code that continues the plane through these two and the upper left one. */
+static inline int predicted_back(int left, int up, int corner)
+{
+    int least = left < up ? left : up, most = left < up ? up : left, plane = left + up - corner;
+    int median = plane < least ? least : plane > most ? most : plane;
+    bool all = left && up && corner;
+    return all ? median : left ? left : up;
+}
+
+/* Writes the far code (depth code of the farthest surface) of each cell, as its difference from a prediction from the codes of
+   the left, upper and upper left cells. */
+static uint8_t *put_back(const struct coder *coder, uint8_t *out)
+{
+    int columns = coder->columns;
+    for (int row = 0; row < coder->rows; row++) {
+        const uint16_t *restrict here = coder->far + (size_t)row * (size_t)columns, *restrict above = row ? here - columns : NULL;
+        uint16_t *restrict symbols = coder->symbols;
+        symbols[0] = (uint16_t)symbol_of(here[0], above ? above[0] : 0);
+        for (int c = 1; c < columns && above; c++)
+            symbols[c] = (uint16_t)symbol_of(here[c], predicted_back(here[c - 1], above[c], above[c - 1]));
+        for (int c = 1; c < columns && !above; c++)
+            symbols[c] = (uint16_t)symbol_of(here[c], here[c - 1]);
+        for (int c = 0; c < columns; c++)
+            out = put_symbol(out, symbols[c], here[c]);
+    }
+    return out;
+}
+
+/* Writes the near code (depth code of the nearer side) of each cell that contains a depth step. The prediction is the first of
+   the left, upper and upper left neighbours' near codes that is nearer than the cell's far side. */
+static uint8_t *put_near(const struct coder *coder, uint8_t *out)
+{
+    size_t columns = (size_t)coder->columns;
+    const uint16_t *near = coder->near;
+    for (size_t d = 0; d < coder->divided_count; d++) {
+        const struct divided_cell *cell = &coder->divided[d];
+        size_t i = cell->index;
+        int back = coder->far[i];
+        int left = cell->column ? near[i - 1] : 0, up = cell->row ? near[i - columns] : 0;
+        int corner = cell->column && cell->row ? near[i - columns - 1] : 0;
+        int predicted = left > back ? left : up > back ? up : corner > back ? corner : back;
+        out = put_symbol(out, symbol_of(near[i], predicted), near[i]);
+    }
+    return out;
+}
+
 /* Returns the mask of a neighbouring cell, which serves as prediction for cell `i`. A neighbour without a depth step has no
    mask. The result is then all ones if its depth is closer to the near side of cell `i` than to the far side, else 0. */
 static unsigned mask_beside(const struct coder *coder, size_t neighbour, size_t i)
@@ -283,20 +333,18 @@ static unsigned mask_beside(const struct coder *coder, size_t neighbour, size_t 
    prediction is their value. Otherwise it is the inverse of the upper left bit, so that an edge continues straight. */
 static uint8_t *put_masks(const struct coder *coder, uint8_t *out)
 {
-    size_t i = 0, columns = (size_t)coder->columns;
-    for (int row = 0; row < coder->rows; row++)
-        for (int c = 0; c < coder->columns; c++, i++) {
-            if (coder->near[i] == coder->far[i])
-                continue;
-            unsigned mask = coarse_mask(coder->swapped[i] ? ~coder->cells[i].mask : coder->cells[i].mask);
-            unsigned west = c ? mask_beside(coder, i - 1, i) : 0, north = row ? mask_beside(coder, i - columns, i) : 0;
-            unsigned left = (mask << 1 & 0xeeee) | (west >> 3 & 0x1111), up = (mask << 4 & 0xfff0) | north >> 12;
-            unsigned between = (left << 4 & 0xfff0) | (north >> 11 & 0xe) | (west >> 3 & 1);
-            unsigned differs = mask ^ ((left & up) | ((left ^ up) & ~between));
-            coder->masks[i] = (uint16_t)mask;
-            *out++ = (uint8_t)differs;
-            *out++ = (uint8_t)(differs >> 8);
-        }
+    size_t columns = (size_t)coder->columns;
+    for (size_t d = 0; d < coder->divided_count; d++) {
+        const struct divided_cell *cell = &coder->divided[d];
+        size_t i = cell->index;
+        unsigned mask = coder->masks[i];
+        unsigned west = cell->column ? mask_beside(coder, i - 1, i) : 0, north = cell->row ? mask_beside(coder, i - columns, i) : 0;
+        unsigned left = (mask << 1 & 0xeeee) | (west >> 3 & 0x1111), up = (mask << 4 & 0xfff0) | north >> 12;
+        unsigned between = (left << 4 & 0xfff0) | (north >> 11 & 0xe) | (west >> 3 & 1);
+        unsigned differs = mask ^ ((left & up) | ((left ^ up) & ~between));
+        *out++ = (uint8_t)differs;
+        *out++ = (uint8_t)(differs >> 8);
+    }
     return out;
 }
 
@@ -331,7 +379,9 @@ static uint8_t *deflated(const uint8_t *data, uint8_t *const ends[PARTS], size_t
 
 static struct depth_grid *make(struct coder *coder)
 {
-    find_depths(coder);
+    for (int row = 0; row < coder->rows; row++)
+        find_depths(coder, row);
+    find_range(coder);
     find_codes(coder);
     uint8_t *ends[PARTS], *end = coder->data;
     uint8_t *(*const put[PARTS])(const struct coder *, uint8_t *) = { put_divided, put_back, put_near, put_masks };

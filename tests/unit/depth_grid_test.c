@@ -4,6 +4,7 @@
 #include "tests/support/test.h"
 
 #include "render/soft/depth_cells.h"
+#include "render/soft/kernels.h"
 #include "tests/support/depth_reader.h"
 
 static const struct depth_lens perspective = { .offset = -0.01, .factor = 2, .step = 0.01f, .least_step = 1e-4f };
@@ -51,8 +52,8 @@ static struct depth_cell *cells_of(const struct depth_picture *picture, const st
     struct depth_cell *cells = mem_array((size_t)(columns * rows), sizeof(*cells));
     const struct depth_source source = { picture->depth, picture->pitch_px, picture->width_px, picture->height_px, lens };
     /* finds the left and the right half of the cells in two calls, as for a picture that is drawn in tiles */
-    depth_cells_find(&source, 0, rows, 0, half, cells);
-    depth_cells_find(&source, 0, rows, half, columns, cells);
+    soft_find_cells(&source, 0, rows, 0, half, cells);
+    soft_find_cells(&source, 0, rows, half, columns, cells);
     return cells;
 }
 

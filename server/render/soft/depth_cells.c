@@ -2,6 +2,7 @@
 /* Computes the cells of a depth grid (depth_grid.h): nearest and farthest depth, and the pixels on the nearer side of a depth step. */
 #include "render/soft/depth_cells.h"
 
+#include "render/soft/kernels.h"
 #include "render/soft/lanes.h"
 
 /* Smallest gap in depth between the two sides of a depth step, as a fraction of the cell's depth range; with a smaller gap the
@@ -92,8 +93,8 @@ static void find_edge_cell(const struct depth_source *source, int row, int colum
     find_cell(source->lens, depth, DEPTH_CELL_PX, cell);
 }
 
-SOFT_INLINE void find_rows(const struct depth_source *source, int first_row, int end_row, int first_column, int end_column,
-                           struct depth_cell *cells)
+void soft_find_cells(const struct depth_source *source, int first_row, int end_row, int first_column, int end_column,
+                     struct depth_cell *cells)
 {
     int columns = depth_cells_along(source->width_px), whole_columns = source->width_px / DEPTH_CELL_PX;
     int whole_rows = source->height_px / DEPTH_CELL_PX;
@@ -106,19 +107,4 @@ SOFT_INLINE void find_rows(const struct depth_source *source, int first_row, int
             else
                 find_edge_cell(source, row, column, &out[column]);
     }
-}
-
-SIMD_AVX2 static void find_rows_avx2(const struct depth_source *source, int first_row, int end_row, int first_column, int end_column,
-                                     struct depth_cell *cells)
-{
-    find_rows(source, first_row, end_row, first_column, end_column, cells);
-}
-
-void depth_cells_find(const struct depth_source *source, int first_row, int end_row, int first_column, int end_column,
-                      struct depth_cell *cells)
-{
-    if (simd_has_avx2())
-        find_rows_avx2(source, first_row, end_row, first_column, end_column, cells);
-    else
-        find_rows(source, first_row, end_row, first_column, end_column, cells);
 }

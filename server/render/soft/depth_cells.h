@@ -12,9 +12,4 @@ struct depth_source {
     const struct depth_lens *lens;
 };
 
-/* Finds the depth grid cells (squares of pixels) in rows `first_row` to `end_row` - 1 and columns `first_column` to
-   `end_column` - 1. cells: all cells of the frame, row by row. */
-void depth_cells_find(const struct depth_source *source, int first_row, int end_row, int first_column, int end_column,
-                      struct depth_cell *cells);
-
 #endif

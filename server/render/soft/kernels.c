@@ -10,6 +10,7 @@ const struct soft_kernels soft_kernels_of_set = {
     .count_faces = soft_count_faces,
     .look_again = soft_look_again,
     .color = raster_color,
+    .find_cells = soft_find_cells,
     .shade_field = refined_shade_field,
     .shade_gloss = refined_shade_gloss,
     .shade_surfaces = refined_shade_surfaces,

@@ -5,6 +5,8 @@
 #define RENDER_SOFT_KERNELS_H
 #include "render/soft/tile.h"
 
+struct depth_cell;
+struct depth_source;
 struct refined_item;
 struct refined;
 struct shaded_items;
@@ -27,6 +29,10 @@ struct soft_kernels {
     /* Turns the marks (contents of pixels, soft_impl.h) in a rectangle into colours. The rectangle begins at a multiple of
        SOFT_STRETCH_MOST pixels. */
     void (*color)(const struct raster *raster, const struct soft_rect *rect);
+    /* Finds the depth grid cells (squares of pixels) in rows `first_row` to `end_row` - 1 and columns `first_column` to
+       `end_column` - 1. cells: all cells of the frame, row by row. */
+    void (*find_cells)(const struct depth_source *source, int first_row, int end_row, int first_column, int end_column,
+                       struct depth_cell *cells);
     /* --- of refined frames */
     /* Shades surfaces that show the field. For each item (surface to shade), writes to `out` its triangle, its corner weights in the
        triangle, and its row of the colour map (brightness). */
@@ -56,6 +62,7 @@ extern const struct soft_kernels soft_kernels_plain, soft_kernels_wide, soft_ker
 #define soft_count_faces SOFT_IN_SET(soft_count_faces, SOFT_SET)
 #define soft_look_again SOFT_IN_SET(soft_look_again, SOFT_SET)
 #define raster_color SOFT_IN_SET(raster_color, SOFT_SET)
+#define soft_find_cells SOFT_IN_SET(soft_find_cells, SOFT_SET)
 #define refined_shade_field SOFT_IN_SET(refined_shade_field, SOFT_SET)
 #define refined_shade_gloss SOFT_IN_SET(refined_shade_gloss, SOFT_SET)
 #define refined_shade_surfaces SOFT_IN_SET(refined_shade_surfaces, SOFT_SET)
@@ -69,6 +76,8 @@ void soft_raster_faces(const struct soft_tile *tile, uint32_t mark);
 void soft_count_faces(const struct soft_tile *tile);
 void soft_look_again(struct soft_tile *tile, const struct soft_rect *blocks);
 void raster_color(const struct raster *raster, const struct soft_rect *rect);
+void soft_find_cells(const struct depth_source *source, int first_row, int end_row, int first_column, int end_column,
+                     struct depth_cell *cells);
 void refined_shade_field(const struct refined *refined, struct visibility_band *band, const struct refined_item *items, size_t count,
                          const struct shaded_items *out);
 void refined_shade_gloss(const struct refined *refined, struct visibility_band *band, const struct refined_item *items, size_t count,

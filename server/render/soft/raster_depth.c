@@ -2,6 +2,7 @@
 /* Makes the depth grid (coarse depth for clients, render/depth_grid.h) of a frame that the software renderer drew. */
 #include "base/mem.h"
 #include "render/soft/depth_cells.h"
+#include "render/soft/kernels.h"
 #include "render/soft/soft_impl.h"
 
 void raster_aim_depth(struct raster *raster, const struct light *light)
@@ -24,8 +25,8 @@ void raster_find_cells(const struct raster *raster, const struct soft_rect *rect
 {
     const struct depth_source source = { raster->depth, (size_t)raster->pitch_px, raster->width_px, raster->height_px, &raster->lens };
     if (raster->finds_cells)
-        depth_cells_find(&source, rect->top / DEPTH_CELL_PX, depth_cells_along(rect->bottom + 1), rect->left / DEPTH_CELL_PX,
-                         depth_cells_along(rect->right + 1), raster->cells);
+        raster->soft->kernels->find_cells(&source, rect->top / DEPTH_CELL_PX, depth_cells_along(rect->bottom + 1),
+                                          rect->left / DEPTH_CELL_PX, depth_cells_along(rect->right + 1), raster->cells);
 }
 
 struct depth_grid *raster_depth_grid(const struct raster *raster)
