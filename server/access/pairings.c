@@ -63,6 +63,11 @@ void pairings_close(struct pairings **pairings_ptr)
     *pairings_ptr = NULL;
 }
 
+const char *pairings_unread_file(const struct pairings *pairings)
+{
+    return kept_list_unread_file(&pairings->kept);
+}
+
 bool pairings_secret_valid(const char *secret)
 {
     return strlen(secret) == SECRET_CHARS && !strncmp(secret, "pc_", 3) && strspn(secret + 3, "0123456789abcdef") == SECRET_CHARS - 3;

@@ -37,6 +37,8 @@ struct pairings;
    If the file cannot be read (logged), no device is accepted, and the file is never overwritten. Never returns NULL. */
 struct pairings *pairings_open(struct log *log, const char *folder, struct file_writer *writer);
 void pairings_close(struct pairings **pairings); /* frees the pairings and sets *pairings to NULL; accepts a pointer to NULL */
+/* Returns the name of the file (static) if it could not be read; otherwise NULL. */
+const char *pairings_unread_file(const struct pairings *pairings);
 /* Returns true if the secret has the form of a token from tokens_make(), which has 256 random bits. */
 bool pairings_secret_valid(const char *secret);
 /* Returns why this daemon cannot pair devices, or REFUSAL_NONE. */

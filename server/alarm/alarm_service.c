@@ -384,6 +384,14 @@ int alarm_service_settled(struct alarm_service *service, const struct settling_t
     return state;
 }
 
+int alarm_service_journal_error(struct alarm_service *service)
+{
+    pthread_mutex_lock(&service->thread.lock);
+    int error = service->journal ? journal_error(service->journal) : 0;
+    pthread_mutex_unlock(&service->thread.lock);
+    return error;
+}
+
 const char *alarm_service_mirror(struct alarm_service *service, const struct alarm *list, size_t count, bool whole)
 {
     pthread_mutex_lock(&service->thread.lock);

@@ -52,6 +52,8 @@ enum refusal_code alarm_service_act(struct alarm_service *service, const char *n
 struct settling_ticket alarm_service_begin(struct alarm_service *service);
 void alarm_service_end(struct alarm_service *service, struct settling_ticket *ticket);
 int alarm_service_settled(struct alarm_service *service, const struct settling_ticket *ticket);
+/* Returns 0 if the journal was usable at the last attempt to read or write it, or if there is none; otherwise -errno. */
+int alarm_service_journal_error(struct alarm_service *service);
 /* For a service that mirrors a core: sets alarms, found by name and kind, to the core's states, in the order of `list`. whole:
    all alarms that are not in `list` become normal. Returns NULL, or an error message (static text) if nothing was changed. */
 const char *alarm_service_mirror(struct alarm_service *service, const struct alarm *list, size_t count, bool whole);

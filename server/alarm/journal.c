@@ -2,7 +2,9 @@
 /* The thread that writes the alarm journal, and functions that read the journal. */
 #include "alarm/journal.h"
 
+#include <errno.h>
 #include <math.h>
+#include <stdatomic.h>
 #include <string.h>
 #include <time.h>
 
@@ -24,6 +26,7 @@ struct journal {
     struct log *log;
     char *folder;
     double keep_days;
+    _Atomic int error; /* -errno while the journal cannot be used; 0: it can */
     struct {
         counter *rows, *lost, *waiting, *good;
     } counters;
@@ -75,6 +78,13 @@ static void count_written(struct journal *journal, size_t count, int error)
     pthread_mutex_unlock(&journal->thread.lock);
 }
 
+static void set_error(struct journal *journal, int error)
+{
+    journal->failing = error != 0;
+    atomic_store(&journal->error, error);
+    counter_set(journal->counters.good, !error);
+}
+
 /* Writes the journal rows taken from the queue. now: write even if the retry delay after a failure is not over. */
 static void try_to_write(struct journal *journal, bool now)
 {
@@ -87,15 +97,14 @@ static void try_to_write(struct journal *journal, bool now)
         int64_t wait_ns = journal->retry_after_ns * 2;
         journal->retry_after_ns = wait_ns < NS_PER_S ? NS_PER_S : wait_ns > RETRY_MAX_S * NS_PER_S ? RETRY_MAX_S * NS_PER_S : wait_ns;
         journal->retry_ns = mono_ns + journal->retry_after_ns;
-        if (!journal->failing)
+        if (!journal->failing || error != atomic_load(&journal->error))
             log_err(journal->log, "alarms: the alarm journal cannot be written (%s); new alarm events are kept in memory",
                     database_error_text(error));
     } else if (journal->failing) {
         log_info(journal->log, "alarms: writing the alarm journal works again; the alarm events kept in memory are recorded");
         journal->retry_after_ns = 0;
     }
-    journal->failing = error != 0;
-    counter_set(journal->counters.good, !error);
+    set_error(journal, error);
     count_written(journal, rows - journal->taken.count, error);
 }
 
@@ -236,6 +245,11 @@ void journal_keep(struct journal *journal, const struct alarm *alarm, const char
     put(journal, &entry);
 }
 
+int journal_error(struct journal *journal)
+{
+    return atomic_load(&journal->error);
+}
+
 bool journal_asks(struct journal *journal)
 {
     pthread_mutex_lock(&journal->thread.lock);
@@ -264,15 +278,23 @@ static void restore(void *arg, const char *tag, const char *unit, const struct a
     alarms_restore(restoring->alarms, index, &saved, restoring->now);
 }
 
-/* Restores the alarm states from the journal's file. Skips a damaged file, which the thread renames before it writes. */
+/* Restores the alarm states from the journal's file. Skips a damaged file, which the thread renames before it writes. Runs before
+   that thread starts. */
 static void restore_all(struct journal *journal, struct alarms *alarms, struct instant now)
 {
     struct restoring restoring = { alarms, now };
     int error;
     struct journal_file *file = journal_file_read(journal->log, journal->folder, &error);
     if (file)
-        journal_file_states(file, restore, &restoring);
+        error = journal_file_states(file, restore, &restoring);
     journal_file_close(&file);
+    if (!error)
+        return;
+    log_err(journal->log,
+            "alarms: the alarm journal in %s cannot be read (%s): acknowledged, shelved and suppressed alarms are not restored",
+            journal->folder, database_error_text(error));
+    if (error != -EBADMSG)
+        set_error(journal, error);
 }
 
 static void add_counters(struct journal *journal, struct counters *counters)

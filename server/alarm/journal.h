@@ -29,6 +29,8 @@ void journal_add(struct journal *journal, const struct alarm_change *change, con
 struct settling_ticket journal_begin(struct journal *journal);
 void journal_end(struct journal *journal, struct settling_ticket *ticket);
 int journal_settled(struct journal *journal, const struct settling_ticket *ticket);
+/* Returns 0 if the journal's file was usable at the last attempt to read or write it, otherwise -errno. */
+int journal_error(struct journal *journal);
 /* Returns the journal row for a change of an alarm; texts are copied. */
 struct journal_entry journal_entry_of(const struct alarm_change *change, const char *tag, const char *unit);
 /* queues a journal row for writing; never blocks */

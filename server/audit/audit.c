@@ -4,6 +4,7 @@
 
 #include <errno.h>
 #include <inttypes.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -28,7 +29,7 @@ struct audit {
     char *path;
     struct audit_file file; /* the open audit file; used only by the audit thread */
     struct audit_syslog *syslog;
-    bool failing; /* true: the last write to the audit file failed; used only by the audit thread */
+    _Atomic int error; /* -errno of the last write to the audit file; only the audit thread sets it */
     counter *good, *lines, *lost;
     struct thread thread;
     /* --- below: protected by thread.lock */
@@ -123,6 +124,11 @@ int audit_wait(struct audit *audit, const struct settling_ticket *ticket)
     return state;
 }
 
+int audit_error(const struct audit *audit)
+{
+    return audit ? atomic_load(&audit->error) : 0;
+}
+
 /* --- writing -------------------------------------------------------------------------------------------------------------- */
 
 static bool is_good(const struct audit_entry *entry)
@@ -140,15 +146,16 @@ static void log_entry(struct audit *audit, const struct audit_entry *entry, cons
               *tail ? "; " : "", tail);
 }
 
-static void say_written(struct audit *audit, const char *why)
+static void say_written(struct audit *audit, int error)
 {
-    if (why && !audit->failing)
+    int before = audit_error(audit);
+    if (error && !before)
         log_event(audit->params.log, LOG_ERROR, EVENT_AUDIT_UNWRITABLE,
-                  "audit: %s cannot be written (%s); entries are kept in memory and logged here", audit->path, why);
-    else if (!why && audit->failing)
+                  "audit: %s cannot be written (%s); entries are kept in memory and logged here", audit->path, strerror(-error));
+    else if (!error && before)
         log_event(audit->params.log, LOG_WARN, EVENT_AUDIT_WRITTEN, "audit: writing to %s works again", audit->path);
-    audit->failing = why != NULL;
-    counter_set(audit->good, !audit->failing);
+    atomic_store(&audit->error, error);
+    counter_set(audit->good, !error);
 }
 
 /* Appends an entry to the audit file, the log and the queue for the syslog server. Returns 0, or -errno if the entry is not on disk. */
@@ -160,7 +167,7 @@ static int write_entry(struct audit *audit, const struct audit_entry *entry, int
     if (finding)
         audit_say(audit, &(struct audit_entry){ .event = "audit", .result = "failed", .what = finding });
     mem_free(finding);
-    say_written(audit, error ? strerror(-error) : NULL);
+    say_written(audit, error);
     if (!error) {
         char head[32], tail[80];
         snprintf(head, sizeof(head), "audit %" PRIu64, audit->file.chain.seq);

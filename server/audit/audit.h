@@ -20,6 +20,8 @@ int audit_settled(struct audit *audit, const struct settling_ticket *ticket);
 /* Waits up to a second until audit_settled() knows the result, and returns that result. Call from any thread except the event
    loop, which must not block. */
 int audit_wait(struct audit *audit, const struct settling_ticket *ticket);
+/* Returns 0 if the last attempt to write the audit file succeeded, otherwise -errno. audit NULL: 0. */
+int audit_error(const struct audit *audit);
 /* Queues a copy of an entry for the audit trail. audit NULL: no-op. Call from any thread. */
 void audit_say(struct audit *audit, const struct audit_entry *entry);
 

@@ -11,6 +11,8 @@
 #include "base/files/atomic_file.h"
 #include "base/mem.h"
 
+enum { VERSION = 1 }; /* version of the files' format */
+
 size_t kept_list_find(const json_t *list, const char *id)
 {
     size_t i = 0;
@@ -46,9 +48,15 @@ static void read_file(struct kept_list *kept)
 {
     json_error_t error = { 0 };
     json_t *file = json_load_file(kept->path, JSON_REJECT_DUPLICATES, &error);
-    json_t *list = json_object_get(file, kept->kind->key);
-    kept->unreadable = !good_list(kept->kind, list);
-    if (kept->unreadable)
+    json_t *list = json_object_get(file, kept->kind->key), *version = json_object_get(file, "version");
+    bool newer = json_integer_value(version) > VERSION;
+    kept->unreadable = newer || !good_list(kept->kind, list);
+    if (newer)
+        log_err(kept->log,
+                "%s: version %lld of this file was written by a newer Plantcast; this program supports version %d, and neither uses nor "
+                "changes the file. Install the newer Plantcast again; or stop the daemon, run `mv %s ANOTHER_FOLDER`, and start the daemon",
+                kept->path, (long long)json_integer_value(version), VERSION, kept->path);
+    else if (kept->unreadable)
         log_err(kept->log, "%s:%d: %s%s%s%s; the file is ignored and not changed", kept->path, file ? 1 : error.line,
                 file ? "not a list of " : error.text, file ? kept->kind->key : "", file ? " with " : "", file ? kept->kind->members : "");
     else
@@ -77,6 +85,11 @@ void kept_list_close(struct kept_list *kept)
 json_t *kept_list_newest(const struct kept_list *kept)
 {
     return kept->next ? kept->next : kept->list;
+}
+
+const char *kept_list_unread_file(const struct kept_list *kept)
+{
+    return kept->unreadable ? kept->kind->file : NULL;
 }
 
 enum refusal_code kept_list_refusal(const struct kept_list *kept)
@@ -137,7 +150,7 @@ static enum refusal_code put(struct kept_list *kept, json_t *list, bool mirrored
         json_decref(list);
         return REFUSAL_NONE;
     }
-    json_t *file = json_pack("{s:i,s:O}", "version", 1, kept->kind->key, list);
+    json_t *file = json_pack("{s:i,s:O}", "version", VERSION, kept->kind->key, list);
     struct list_job *own = mem_new(sizeof(*own));
     *own = (struct list_job){ .job = { .write = write_list, .finish = finish_list, .owner = kept },
                               .kept = kept,

@@ -43,6 +43,8 @@ void kept_list_close(struct kept_list *kept);
 json_t *kept_list_newest(const struct kept_list *kept);
 /* Returns the index of the entry with this id, or the length of the list if no entry has it. */
 size_t kept_list_find(const json_t *list, const char *id);
+/* Returns the name of the list's file (static) if that file could not be read; otherwise NULL. */
+const char *kept_list_unread_file(const struct kept_list *kept);
 /* Returns REFUSAL_NONE if the list can be changed, else the reason why it cannot. */
 enum refusal_code kept_list_refusal(const struct kept_list *kept);
 /* Queues the new list for writing to disk; once it is written, file_writer_collect() replaces `list`. Without a folder or a writer the list

@@ -57,6 +57,11 @@ void named_views_close(struct named_views **pointer)
     *pointer = NULL;
 }
 
+const char *named_views_unread_file(const struct named_views *views)
+{
+    return kept_list_unread_file(&views->kept);
+}
+
 /* --- changes ---------------------------------------------------------------------------------------------------------------- */
 
 static enum refusal_code refusal(const struct named_views *views, const char *id)

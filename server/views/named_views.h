@@ -26,6 +26,8 @@ struct named_views;
    empty (logged) and is not overwritten. Never returns NULL. `plant` and `folder` must outlive the views. */
 struct named_views *named_views_open(struct log *log, const struct plant *plant, const char *folder, struct file_writer *writer);
 void named_views_close(struct named_views **views); /* Frees the views and sets *views to NULL. *views may be NULL. */
+/* Returns the name of the file (static) if it could not be read; otherwise NULL. */
+const char *named_views_unread_file(const struct named_views *views);
 /* Saves a new or changed view, and queues the file (kept_list_put()). who: the user; time_us: UTC. Returns REFUSAL_NONE, or why it
    failed. */
 enum refusal_code named_views_save(struct named_views *views, const struct named_view_edit *edit, const char *who, int64_t time_us);

@@ -71,6 +71,11 @@ void notes_close(struct notes **pointer)
     *pointer = NULL;
 }
 
+const char *notes_unread_file(const struct notes *notes)
+{
+    return kept_list_unread_file(&notes->kept);
+}
+
 static size_t count(const json_t *list, int64_t now_us, bool ended)
 {
     size_t found = 0;

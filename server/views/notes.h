@@ -30,6 +30,8 @@ struct notes;
    overwritten. Never returns NULL. `folder` must outlive the notes. */
 struct notes *notes_open(struct log *log, const char *folder, struct file_writer *writer);
 void notes_close(struct notes **notes); /* Frees the notes and sets *notes to NULL. *notes may be NULL. */
+/* Returns the name of the file (static) if it could not be read; otherwise NULL. */
+const char *notes_unread_file(const struct notes *notes);
 /* Adds a user's note and queues the file (kept_list_put()). Returns REFUSAL_NONE with the note's id, or why it failed. */
 enum refusal_code notes_add(struct notes *notes, const struct note *note, const char *who, int64_t now_us, char id[NOTE_ID_BYTES]);
 /* Ends a note and queues the file (kept_list_put()). may_end_others: the user may also end notes that other users wrote. Returns

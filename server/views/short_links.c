@@ -52,6 +52,11 @@ void short_links_close(struct short_links **pointer)
     *pointer = NULL;
 }
 
+const char *short_links_unread_file(const struct short_links *links)
+{
+    return kept_list_unread_file(&links->kept);
+}
+
 static const char *member(const json_t *list, size_t at, const char *name)
 {
     return json_string_value(json_object_get(json_array_get(list, at), name));

@@ -19,6 +19,8 @@ struct short_links;
    overwritten. Never returns NULL. `folder` must outlive the links. */
 struct short_links *short_links_open(struct log *log, const char *folder, struct file_writer *writer);
 void short_links_close(struct short_links **links); /* Frees the links and sets *links to NULL. *links may be NULL. */
+/* Returns the name of the file (static) if it could not be read; otherwise NULL. */
+const char *short_links_unread_file(const struct short_links *links);
 /* Returns REFUSAL_NONE with the id of a view, or why it failed. The id depends only on the view, so that sharing a view again
    returns the same id. Sharing it again also marks the link as used. If SHORT_LINKS links exist, a new link replaces the least
    recently used one. If more than half of the links were never used, the new link replaces the oldest of these. Fails with

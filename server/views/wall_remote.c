@@ -66,6 +66,11 @@ void wall_remote_close(struct wall_remote **pointer)
     *pointer = NULL;
 }
 
+const char *wall_remote_unread_file(const struct wall_remote *remote)
+{
+    return kept_list_unread_file(&remote->kept);
+}
+
 /* --- orders ----------------------------------------------------------------------------------------------------------------- */
 
 const char *wall_place_wrong(const struct plant *plant, const struct wall_place *place)

@@ -36,6 +36,8 @@ struct wall_remote;
    (logged) and is not overwritten. Never returns NULL. `plant` and `folder` must outlive the result. */
 struct wall_remote *wall_remote_open(struct log *log, const struct plant *plant, const char *folder, struct file_writer *writer);
 void wall_remote_close(struct wall_remote **remote); /* Frees the orders and sets *remote to NULL. *remote may be NULL. */
+/* Returns the name of the file (static) if it could not be read; otherwise NULL. */
+const char *wall_remote_unread_file(const struct wall_remote *remote);
 /* Returns why a pane cannot be controlled (static text): it is missing in the plant file, or has no views. NULL: it can be controlled. */
 const char *wall_place_wrong(const struct plant *plant, const struct wall_place *place);
 /* Carries out an order and queues the file (kept_list_put()). The pane must exist in the plant file. Returns REFUSAL_NONE, or why it

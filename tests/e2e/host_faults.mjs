@@ -2,7 +2,7 @@
 // Faults of a machine that runs for years: the volume of the history becomes read-only, and the daemon's certificate expires.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { copyFileSync, existsSync, mkdirSync, mkdtempSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
+import { copyFileSync, existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { basename, join } from 'node:path';
 import { after, test } from 'node:test';
@@ -124,6 +124,37 @@ test('after a downgrade, log, /readyz and a metric tell of a history file in a n
         await until('a point on disk again', () => ledger(plant, history).some((line) => /,22[.,]/.test(`${line},`)));
         assert.equal(String((await get(plant.port, '/readyz')).body), 'ok\n');
         assert.equal(await gauge(plant, 'plantcast_history_good'), 1);
+    } finally {
+        await plant.destroy();
+    }
+});
+
+test('log, /readyz and a metric name each other file that a newer version wrote or that is damaged', {
+    skip, timeout: 180000,
+}, async () => {
+    const plant = await TinyPlant.create(), history = join(plant.folder, 'history');
+    const ready = async () => String((await get(plant.port, '/readyz')).body);
+    try {
+        mkdirSync(history);
+        sh(`python3 -c "import sqlite3; sqlite3.connect('${join(history, 'alarms.sqlite')}').execute('PRAGMA user_version = 99')"`);
+        writeFileSync(join(history, 'notes.json'), '{"version": 9, "notes": []}');
+        writeFileSync(join(history, 'views.json'), '{"version": 1, "views": [');
+        await plant.start('--history', history);
+        await plant.daemon.line(/alarms\.sqlite: version 99 of this file was written by a newer Plantcast/);
+        await plant.daemon.line(/alarms: the alarm journal in \S+ cannot be read \(a newer Plantcast .*\): .* are not restored/);
+        await plant.daemon.line(/notes\.json: version 9 of this file was written by a newer Plantcast/);
+        await plant.daemon.line(/views\.json:1: .*; the file is ignored and not changed/);
+        assert.equal(await gauge(plant, 'plantcast_alarm_journal_good'), 0);
+        assert.equal(await ready(), 'ok; alarm events are not recorded, because a newer Plantcast wrote the alarm journal: the log names ' +
+            'the file and the command that moves it away; these files are not used, because they cannot be read: views.json, ' +
+            'notes.json: the log says why\n');
+        assert.equal(readFileSync(join(history, 'notes.json'), 'utf8'), '{"version": 9, "notes": []}');
+        await plant.daemon.stop();
+        for (const name of ['alarms.sqlite', 'notes.json', 'views.json'])
+            rmSync(join(history, name));
+        await plant.startDaemon('--history', history);
+        assert.equal(await ready(), 'ok\n');
+        assert.equal(await gauge(plant, 'plantcast_alarm_journal_good'), 1);
     } finally {
         await plant.destroy();
     }

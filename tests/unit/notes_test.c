@@ -57,6 +57,21 @@ static void assert_notes(char *text, const char *expected)
     assert_string_equal(found, expected);
 }
 
+CASE(a_file_of_a_newer_version_is_not_used)
+{
+    assert_int_equal(add(f, "pump", NOON, 0), REFUSAL_NONE);
+    assert_null(notes_unread_file(f->notes));
+    char *path = test_printf("%s/" NOTES_FILE, f->history);
+    json_t *file = test_json(json_load_file(path, 0, NULL));
+    json_object_set_new(file, "version", json_integer(2));
+    assert_int_equal(json_dump_file(file, path, 0), 0);
+    open_again(f);
+    assert_notes(notes_text(f->notes, NOON), "");
+    assert_string_equal(notes_unread_file(f->notes), NOTES_FILE);
+    assert_int_equal(add(f, "valve", NOON, 0), REFUSAL_KEPT_UNREAD);
+    assert_true(json_equal(file, test_json(json_load_file(path, 0, NULL))));
+}
+
 CASE(they_end_by_their_time_or_by_hand)
 {
     char first[NOTE_ID_BYTES];

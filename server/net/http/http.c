@@ -3,7 +3,6 @@
 #include <string.h>
 
 #include "base/clock.h"
-#include "base/files/database.h"
 #include "base/mem.h"
 #include "corelink/core_instant.h"
 #include "corelink/core_tags.h"
@@ -20,58 +19,6 @@ static int alive(struct server_context *server, struct http_exchange *request)
 {
     (void)server;
     return request_answer_text(request, HTTP_STATUS_OK, "ok\n");
-}
-
-/* Returns whether the request is a load balancer's check whether the daemon may draw for a core (/readyz?role=render). */
-static bool is_asked_as_renderer(struct http_exchange *request)
-{
-    char argument[16];
-    return lws_hdr_copy_fragment(request->wsi, argument, sizeof(argument), WSI_TOKEN_HTTP_URI_ARGS, 0) > 0 &&
-           !strcmp(argument, "role=render");
-}
-
-/* Learns from a header of the load balancer's check whether the balancer sends users to this node. Ignores requests with
-   X-Forwarded-For, which come from clients and may be forged. */
-static void hear_balancer(struct server_context *server, struct http_exchange *request)
-{
-    static const char header[] = "x-haproxy-server-state:";
-    const struct connection *connection = connection_of(request->wsi);
-    char state[512];
-    if (connection->from_proxy && !connection->forwarded &&
-        lws_hdr_custom_copy(request->wsi, state, sizeof(state), header, sizeof(header) - 1) > 0)
-        core_loss_on_check(&server->life.core_loss, state, clock_mono_ns());
-}
-
-/* Answers 200, also if readings are not recorded: a load balancer must not take pictures from users for that reason. */
-static int answer_ready(const struct server_context *server, struct http_exchange *request)
-{
-    struct historian *historian = server->params.plant.historian;
-    int error = historian ? historian_error(historian) : 0;
-    char *text =
-        mem_printf("%s%s\n", server->params.keeper ? renderers_standby_texts(server)->ready : "ok",
-                   error == -DATABASE_NEWER ? "; readings are not recorded, because a newer Plantcast wrote a history file: the log "
-                                              "names the file and the command that moves it away"
-                   : error                  ? "; readings are not recorded: the log says why"
-                                            : "");
-    int result = request_answer_text(request, HTTP_STATUS_OK, text);
-    mem_free(text);
-    return result;
-}
-
-static int ready(struct server_context *server, struct http_exchange *request)
-{
-    hear_balancer(server, request);
-    if (server->params.keeper && !core_end_leads(server))
-        return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "not ready: this core is the standby and does not lead\n");
-    if (is_asked_as_renderer(request) && !server->params.is_core && !server->params.plant.core_link)
-        return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE,
-                                   "not a renderer: this daemon was started without --role render and polls the devices itself\n");
-    if (is_asked_as_renderer(request) && server->life.drain_ns)
-        return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE,
-                                   "not ready: this daemon moves its sessions to other daemons (drain)\n");
-    if (render_service_ready(server->params.plant.render_service))
-        return answer_ready(server, request);
-    return request_answer_text(request, HTTP_STATUS_SERVICE_UNAVAILABLE, "the OpenGL context was lost; a new context is being created\n");
 }
 
 #define NGINX_LINES "proxy_http_version 1.1; proxy_set_header Upgrade $http_upgrade; proxy_set_header Connection \"upgrade\";"
@@ -162,7 +109,7 @@ static const struct {
 } routes[] = {
     { "/healthz", alive, ROLE_NOBODY, 0 },
     /* /readyz needs no check of its own: the event loop serves requests only after models and GL are loaded */
-    { "/readyz", ready, ROLE_NOBODY, 0 },
+    { "/readyz", answer_ready, ROLE_NOBODY, 0 },
     { "/stream", stream_without_upgrade, ROLE_NOBODY, 0 },
     { "/login", ask_login, ROLE_NOBODY, 0 },
     { "/login/callback", ask_login_callback, ROLE_NOBODY, 0 },

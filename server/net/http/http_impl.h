@@ -121,6 +121,7 @@ int ask_login_callback(struct server_context *server, struct http_exchange *requ
 int ask_logout(struct server_context *server, struct http_exchange *request);
 int api_me(struct server_context *server, struct http_exchange *request);
 int ask_reload(struct server_context *server, struct http_exchange *request);
+int answer_ready(struct server_context *server, struct http_exchange *request);
 int api_import(struct server_context *server, struct http_exchange *request);
 int api_import_report(struct server_context *server, struct http_exchange *request);
 int api_import_matches(struct server_context *server, struct http_exchange *request);
