@@ -155,6 +155,41 @@ test('uploads with a bad name, a bad size or from another site are refused, and 
     assert.equal((await served.idle()).files.length, 1);
 });
 
+// Sends a request that announces a body of `length` bytes and sends 16 MB of it before it reads anything. Returns the answer, and
+// why the connection ended.
+async function pushes(port, request, length, header = `Host: 127.0.0.1:${port}`) {
+    const socket = connect(port, '127.0.0.1'), sent = 16 << 20;
+    let said = '', why = 'end';
+    const ended = new Promise((done) => socket.on('close', done));
+    socket.on('data', (bytes) => { said += bytes; }).on('error', ({ code }) => { why = code; }).pause();
+    socket.write(`POST ${request} HTTP/1.1\r\nContent-Length: ${length}\r\n${header}\r\n\r\n`);
+    await new Promise((done) => socket.write(Buffer.alloc(sent), done));
+    socket.resume();
+    for (const end = performance.now() + 60000; !/\r\n\r\n[^]*\n$/.test(said) && why === 'end' && performance.now() < end;)
+        await new Promise((done) => setTimeout(done, 20));
+    if (length > sent)
+        socket.destroy();
+    await ended;
+    return { said, why };
+}
+
+test('a client that is still sending its body when it is refused gets the answer', options, async (t) => {
+    const served = await Served.start(), large = 3e9, whole = 16 << 20;
+    t.after(() => served.destroy());
+    for (const [request, length, status, says, header] of [
+        ['/api/v1/import/upload?name=x.glb', large, 413, /file/], ['/api/v1/import/upload?name=..%2Fx.glb', large, 400, /name/],
+        ['/api/v1/import/upload?name=..%2Fx.glb', whole, 400, /name/], ['/api/v1/import/decide', large, 413, /file/],
+        ['/api/v1/import/run?units=km', large, 400, /./], ['/api/v1/import/nothing', large, 405, /POST/], ['/x', whole, 405, /GET/],
+        ['/api/v1/import/upload?name=x.glb', large, 403, /./, 'Host: localhost\r\nOrigin: http://elsewhere.example'],
+        ['/api/v1/import/upload?name=x.glb', large, 400, /Host/, 'Origin: http://elsewhere.example'],
+    ]) {
+        const { said, why } = await pushes(served.port, request, length, header), what = `${request} ${header}: ${said}`;
+        assert.equal(why, 'end', what);
+        assert.match(said, new RegExp(`^HTTP/1\\.1 ${status} [^]*connection: close`, 'i'), what);
+        assert.match(said.replace(/^[^]*?\r\n\r\n/, ''), says, what);
+    }
+});
+
 test('at most four uploads run at a time, and one that trickles is ended', options, async () => {
     const served = await Served.start(), drips = [];
     const put = (name) => served.post(`/upload?name=${name}`, 'x');

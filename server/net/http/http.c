@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Handles HTTP requests other than streams: checks rights, finds the handler of a path, and serves the web client's files. */
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/clock.h"
@@ -226,6 +227,15 @@ static int refuse_method(const struct server_context *server, struct http_exchan
                           posts ? "POST" : "GET, HEAD");
 }
 
+/* Returns the number of bytes of the body that a request announces; INT64_MAX: not known. */
+static int64_t announced_bytes(struct lws *wsi)
+{
+    char length[32];
+    if (lws_hdr_total_length(wsi, WSI_TOKEN_HTTP_TRANSFER_ENCODING) > 0)
+        return INT64_MAX;
+    return connection_header(wsi, WSI_TOKEN_HTTP_CONTENT_LENGTH, length, sizeof(length)) ? strtoll(length, NULL, 10) : 0;
+}
+
 static int serve(struct server_context *server, struct http_exchange *request, const char *path)
 {
     bool posts = !strcmp(path, RELOAD_PATH) || !strcmp(path, LOGOUT_PATH) || import_takes_post(server, path);
@@ -236,6 +246,7 @@ static int serve(struct server_context *server, struct http_exchange *request, c
     /* clears the value that the connection's previous request left: libwebsockets reuses this struct for all requests of a
        connection */
     request->sandboxed = false;
+    request->body_left = get || request->head ? 0 : announced_bytes(request->wsi);
     counter_inc(server->counters.requests, 1);
     connection_set_answered(server, request->wsi, false);
     stuck_head_arrived(request->wsi);
@@ -323,8 +334,8 @@ int http_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user,
         return result;
     switch (reason) {
     case LWS_CALLBACK_HTTP: return serve(server_context_of(wsi), request_of(wsi, slot), in);
-    case LWS_CALLBACK_HTTP_BODY: return *slot ? import_take_body(server_context_of(wsi), *slot, in, len) : 0;
-    case LWS_CALLBACK_HTTP_BODY_COMPLETION: return *slot ? import_end_body(server_context_of(wsi), *slot) : 0;
+    case LWS_CALLBACK_HTTP_BODY: return *slot ? request_take_body(server_context_of(wsi), *slot, in, len) : 0;
+    case LWS_CALLBACK_HTTP_BODY_COMPLETION: return *slot ? request_take_body(server_context_of(wsi), *slot, NULL, 0) : 0;
     case LWS_CALLBACK_HTTP_WRITEABLE: return *slot ? on_writeable(server_context_of(wsi), *slot) : 0;
     /* libwebsockets also sends this event when a connection is upgraded to a WebSocket; request_end() handles all other
        connections */

@@ -25,10 +25,13 @@ static bool add_header(struct lws *wsi, const char *name, const char *value, uns
     return lws_add_http_header_by_name(wsi, (const unsigned char *)name, (const unsigned char *)value, (int)strlen(value), p, end) == 0;
 }
 
+/* time in nanoseconds for which the rest of a refused request's body is discarded; 30 s as in nginx (lingering_time) */
+static const int64_t DISCARD_NS = 30 * NS_PER_S;
+
 /* Returns whether the server closes the connection after this answer. */
 static bool closes(const struct http_exchange *request)
 {
-    return request->close || server_context_of(request->wsi)->life.goes_down;
+    return request->close || request->body_left > 0 || server_context_of(request->wsi)->life.goes_down;
 }
 
 /* Adds the status line and the body's headers. An answer in pieces has no Content-Length. Returns false if the headers do not fit. */
@@ -139,7 +142,20 @@ int request_done(struct http_exchange *request)
     request->pieces = PIECES_NONE;
     connection_set_answered(server_context_of(request->wsi), request->wsi, true);
     stuck_head_await(request->wsi, false);
+    /* A connection that is closed while the client still sends is reset, and the client then loses the answer. */
+    if (request->body_left > 0) {
+        request->discards_until_ns = clock_mono_ns() + DISCARD_NS;
+        return 0;
+    }
     return closes(request) || lws_http_transaction_completed(request->wsi) ? -1 : 0;
+}
+
+int request_take_body(struct server_context *server, struct http_exchange *request, const void *bytes, size_t count)
+{
+    request->body_left -= bytes ? (int64_t)count : request->body_left;
+    if (!request->discards_until_ns)
+        return bytes ? import_take_body(server, request, bytes, count) : import_end_body(server, request);
+    return bytes && clock_mono_ns() < request->discards_until_ns ? 0 : -1;
 }
 
 /* Writes the answer; takes ownership of body. Bytes that the socket does not accept now are written once it does. */

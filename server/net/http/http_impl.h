@@ -22,6 +22,10 @@ struct http_exchange {
     struct address_usage *usage;
     bool head;              /* true: the request's method is HEAD, so the answer has no body */
     bool close;             /* true: the connection is to be closed once this answer is sent */
+    int64_t body_left;      /* number of bytes of the request's body that have not arrived yet */
+    /* monotonic time until which the rest of the body is read and discarded, because the request was answered without it; 0: it
+       was not */
+    int64_t discards_until_ns;
     bool sandboxed; /* true: the answer belongs to a sandboxed document (opaque origin), which Chromium runs in a process of its own */
     bool varies;            /* true: the next answer depends on the request's header Accept-Encoding */
     bool gzip;              /* true: the body of the next answer is compressed as gzip */
@@ -61,6 +65,9 @@ struct args { /* decoded arguments of a query */
 #define HTTP_TEXT "text/plain; charset=utf-8"
 
 /* Functions that return int return the result for the libwebsockets callback: 0, or -1 to close the connection. */
+
+/* Takes the next `count` bytes of the request's body from libwebsockets; bytes NULL: the body has ended. */
+int request_take_body(struct server_context *server, struct http_exchange *request, const void *bytes, size_t count);
 
 /* Sends an answer with one extra header (NULL: none). Takes ownership of body (mem_free), which is written as the socket accepts it. */
 int request_answer(struct http_exchange *request, int status, const char *type, char *body, size_t count, const char *extra_name,
