@@ -36,7 +36,7 @@ void session_drop_ready(struct session *session)
     for (struct encoded_frame *encoded = session->delivery.ready, *next; encoded; encoded = next) {
         next = encoded->next;
         session->stats.dropped++;
-        pacer_dropped(&session->delivery.pacer);
+        pacer_dropped(&session->delivery.pacer, session_times(&encoded->request));
         encoded_frame_destroy(&encoded);
     }
     session->delivery.ready = NULL;

@@ -39,6 +39,11 @@ static const int64_t CAMERA_INTERVAL_NS = 120 * NS_PER_MS;
    (pacing/quality_ladder.h) reduces the picture */
 enum { SMALL_PX = 128 };
 
+bool session_times(const struct frame_request *request)
+{
+    return request->view.tier == TIER_PREVIEW && request->urgency == URGENCY_INPUT && !request->of_data;
+}
+
 /* Handles the answer that the requested frame could not be drawn. A session that already shows a frame keeps it. A new session
    is closed, because it would show nothing. */
 static void on_failure(struct session *session, const struct frame_request *request)
@@ -97,7 +102,7 @@ void session_on_frame(struct session *session, struct encoded_frame *encoded)
         session->stats.dropped += late;
         if (session_is_tile(session) && !encoded->packet && encoded->absence == FRAME_UNCHANGED && !late)
             session_tile_unchanged(session, encoded->request.picture);
-        pacer_dropped(&session->delivery.pacer);
+        pacer_dropped(&session->delivery.pacer, session_times(&encoded->request));
         encoded_frame_destroy(&encoded);
         return;
     }
@@ -363,8 +368,10 @@ bool session_wants(const struct session *session, int64_t now_ns, struct frame_r
 
 void session_requested(struct session *session, const struct frame_request *request, bool replaced)
 {
-    if (!replaced)
-        pacer_asked(&session->delivery.pacer, request->asked_ns);
+    if (replaced)
+        pacer_replaced(&session->delivery.pacer, session_times(request), request->asked_ns);
+    else
+        pacer_asked(&session->delivery.pacer, session_times(request), request->asked_ns);
     session->demand.refining = request->urgency == URGENCY_REFINE || (session->demand.refining && session->delivery.pacer.asked > 1);
     session->delivery.pacer.ladder.reprojects = request->depth;
     session->demand.input = session->demand.any = session->demand.data = session->tile.moved = false;
@@ -412,8 +419,7 @@ static size_t depth_bytes(const struct frame *frame)
    size, and a wall's tiles that of the wall. */
 static bool counts_for_size(const struct session *session, const struct frame_request *request)
 {
-    return request->view.tier == TIER_PREVIEW && request->urgency == URGENCY_INPUT && !request->of_data && !session->following.leader &&
-           !session_is_tile(session);
+    return session_times(request) && !session->following.leader && !session_is_tile(session);
 }
 
 struct encoded_frame *session_next_frame(struct session *session, int64_t now_ns, uint32_t *seq, enum session_depth *depth)

@@ -164,7 +164,7 @@ void session_take_plant(struct session *session, const char *carried)
     session->demand.refined = REFINED_NOT;
     /* counts the outstanding frame requests as dropped, because the old plant's render service no longer answers them */
     while (session->delivery.pacer.asked > 0)
-        pacer_dropped(&session->delivery.pacer);
+        pacer_dropped(&session->delivery.pacer, session->delivery.pacer.previews > 0);
     if (!session->hello)
         return;
     session->owed.following |= session->following.left != 0;

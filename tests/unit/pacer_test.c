@@ -19,7 +19,7 @@ static struct pacer fresh(void)
 static uint32_t send_one(struct pacer *pacer, size_t bytes, int64_t now_ns)
 {
     struct pacer_note note = { .moving = true, .step = pacer->ladder.step };
-    pacer_asked(pacer, now_ns);
+    pacer_asked(pacer, false, now_ns);
     uint32_t seq = pacer_sent(pacer, bytes, &note, now_ns);
     pacer_wrote(pacer, true, now_ns);
     return seq;
@@ -42,9 +42,9 @@ TEST(what_is_asked_for_counts)
 {
     struct pacer pacer = fresh();
     for (int i = 0; i < PACER_LEAST; i++)
-        pacer_asked(&pacer, 0);
+        pacer_asked(&pacer, false, 0);
     assert_false(pacer_may_ask(&pacer, 0));
-    pacer_dropped(&pacer);
+    pacer_dropped(&pacer, false);
     assert_true(pacer_may_ask(&pacer, 0));
 }
 
@@ -52,7 +52,7 @@ TEST(nothing_is_asked_for_while_the_socket_is_full)
 {
     struct pacer pacer = fresh();
     struct pacer_note note = { 0 };
-    pacer_asked(&pacer, 0);
+    pacer_asked(&pacer, false, 0);
     pacer_sent(&pacer, 1000, &note, MS);
     assert_false(pacer_may_ask(&pacer, 2 * MS));
     pacer_wrote(&pacer, false, 3 * MS);
@@ -66,7 +66,7 @@ TEST(a_picture_cut_short_is_not_waited_for)
 {
     struct pacer pacer = fresh();
     struct pacer_note note = { 0 };
-    pacer_asked(&pacer, 0);
+    pacer_asked(&pacer, false, 0);
     pacer_sent(&pacer, 1000, &note, MS);
     pacer_gave_up(&pacer);
     /* the frame was given up while being sent: no other one may be requested before its remaining bytes are gone */

@@ -64,7 +64,7 @@ static double run(struct busy_server *server, double seconds)
             double scale = quality_ladder_rung(&pacer->ladder, 0).scale;
             struct pacer_note note = { .moving = true, .counts = true };
             while (pacer->asked < 2)
-                pacer_asked(pacer, server->now_ns);
+                pacer_asked(pacer, true, server->now_ns);
             server->now_ns += (int64_t)(server->full_ns * (1 + 2 * scale * scale) / 3);
             note.made_ns = server->now_ns;
             uint32_t seq = pacer_sent(pacer, 1000, &note, server->now_ns);
@@ -79,7 +79,7 @@ static void rest(struct busy_server *server, int64_t ns)
 {
     for (int i = 0; i < server->count; i++)
         while (server->pacers[i].asked > 0)
-            pacer_dropped(&server->pacers[i]);
+            pacer_dropped(&server->pacers[i], true);
     server->now_ns += ns;
 }
 
@@ -127,7 +127,7 @@ TEST(single_slow_pictures_change_nothing)
     pacer_init(&pacer);
     for (int64_t now_ns = NS_PER_S; now_ns < 60 * NS_PER_S; now_ns += NS_PER_S) {
         struct pacer_note note = { .moving = true, .counts = true, .made_ns = now_ns + 400 * MS };
-        pacer_asked(&pacer, now_ns);
+        pacer_asked(&pacer, true, now_ns);
         uint32_t seq = pacer_sent(&pacer, 1000, &note, note.made_ns);
         pacer_wrote(&pacer, true, note.made_ns);
         pacer_acked(&pacer, seq, MS, note.made_ns + MS);
@@ -142,17 +142,41 @@ TEST(what_does_not_count_changes_nothing)
     for (int way = 0; way < 3; way++) {
         struct pacer pacer;
         pacer_init(&pacer);
-        pacer_asked(&pacer, NS_PER_S);
+        pacer_asked(&pacer, true, NS_PER_S);
         for (int64_t now_ns = NS_PER_S; now_ns < 20 * NS_PER_S; now_ns += 200 * MS) {
             struct pacer_note note = { .moving = true, .counts = way > 0, .made_ns = now_ns };
-            pacer_asked(&pacer, now_ns);
+            pacer_asked(&pacer, true, now_ns);
             if (way == 1) {
-                pacer_dropped(&pacer);
-                pacer_asked(&pacer, now_ns);
+                pacer_dropped(&pacer, true);
+                pacer_asked(&pacer, true, now_ns);
             }
             uint32_t seq = pacer_sent(&pacer, 1000, &note, now_ns);
             pacer_wrote(&pacer, true, now_ns);
             pacer_acked(&pacer, seq, MS, now_ns);
+        }
+        assert_true(way < 2 ? pacer.ladder.made.index == 0 : pacer.ladder.made.index > 0);
+    }
+}
+
+/* A frame of another kind waits for 500 ms before the camera moves. The preview replaces that frame, or is requested while the frame
+   is drawn; then it takes 20 ms. In the last way, the frame that waits is a preview itself, so its time counts. */
+TEST(the_wait_of_another_frame_is_not_that_of_a_preview)
+{
+    for (int way = 0; way < 3; way++) {
+        struct pacer pacer;
+        pacer_init(&pacer);
+        for (int64_t now_ns = NS_PER_S; now_ns < 20 * NS_PER_S; now_ns += 600 * MS) {
+            struct pacer_note note = { .moving = true, .counts = true, .made_ns = now_ns + 520 * MS };
+            pacer_asked(&pacer, way == 2, now_ns);
+            if (way == 1)
+                pacer_asked(&pacer, true, now_ns + 500 * MS);
+            else
+                pacer_replaced(&pacer, true, now_ns + 500 * MS);
+            uint32_t seq = pacer_sent(&pacer, 1000, &note, note.made_ns);
+            pacer_wrote(&pacer, true, note.made_ns);
+            pacer_acked(&pacer, seq, MS, note.made_ns + MS);
+            if (way == 1)
+                pacer_dropped(&pacer, false);
         }
         assert_true(way < 2 ? pacer.ladder.made.index == 0 : pacer.ladder.made.index > 0);
     }
@@ -199,7 +223,7 @@ TEST(a_network_that_limits_the_rate_is_not_a_slow_server)
     pacer_init(&pacer);
     for (int64_t now_ns = NS_PER_S; now_ns < 60 * NS_PER_S; now_ns += 500 * MS) {
         struct pacer_note note = { .moving = true, .counts = true, .made_ns = now_ns + 20 * MS };
-        pacer_asked(&pacer, now_ns);
+        pacer_asked(&pacer, true, now_ns);
         uint32_t seq = pacer_sent(&pacer, 1000, &note, note.made_ns);
         pacer_wrote(&pacer, true, note.made_ns);
         pacer_acked(&pacer, seq, MS, now_ns + 490 * MS);
@@ -214,7 +238,7 @@ TEST(a_slow_server_behind_a_slow_network_makes_smaller_pictures)
     pacer_init(&pacer);
     for (int64_t now_ns = NS_PER_S; now_ns < 10 * NS_PER_S; now_ns += 450 * MS) {
         struct pacer_note note = { .moving = true, .counts = true, .made_ns = now_ns + 400 * MS };
-        pacer_asked(&pacer, now_ns);
+        pacer_asked(&pacer, true, now_ns);
         uint32_t seq = pacer_sent(&pacer, 1000, &note, note.made_ns);
         pacer_wrote(&pacer, true, note.made_ns);
         pacer_acked(&pacer, seq, MS, note.made_ns + 40 * MS);

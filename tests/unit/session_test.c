@@ -464,6 +464,31 @@ CASE(a_full_window_only_replaces)
     assert_false(session_next_request(f->session, f->now_ns, &request));
 }
 
+/* A request for a refined frame waits while other cameras move. The time of the preview that replaces it begins later. */
+CASE(a_preview_that_replaces_a_refined_frame_is_timed_from_its_own_request)
+{
+    struct frame_request request;
+    const struct pacer *pacer = &f->session->delivery.pacer;
+    greet(f);
+    assert_true(ask(f, &request));
+    paint(f, &request, true);
+    f->now_ns += NS_PER_S;
+    assert_true(ask(f, &request));
+    assert_int_equal(request.view.tier, TIER_REFINED);
+    assert_int_equal(pacer->previews, 0);
+    f->now_ns += NS_PER_S;
+    say(f, "{\"type\":\"camera\",\"seq\":1,\"eye\":[9,9,9],\"target\":[0,0,1]}");
+    assert_true(session_next_request(f->session, f->now_ns, &request));
+    session_requested(f->session, &request, true);
+    assert_true(pacer->asked == 1 && pacer->previews == 1);
+    assert_int_equal(pacer->owed_since_ns, f->now_ns);
+    f->now_ns += NS_PER_S;
+    say(f, "{\"type\":\"camera\",\"seq\":2,\"eye\":[8,9,9],\"target\":[0,0,1]}");
+    assert_true(session_next_request(f->session, f->now_ns, &request));
+    session_requested(f->session, &request, true);
+    assert_int_equal(pacer->owed_since_ns, f->now_ns - NS_PER_S);
+}
+
 CASE(equal_pictures_free_their_place)
 {
     struct frame_request request;

@@ -61,18 +61,44 @@ bool pacer_may_ask(const struct pacer *pacer, int64_t now_ns)
     return fits_window(pacer);
 }
 
-void pacer_asked(struct pacer *pacer, int64_t now_ns)
+/* Counts the newest request. A preview's time begins with its own request, not with that of a frame of another kind, which may
+   wait for long. */
+static void add_newest(struct pacer *pacer, bool preview, int64_t now_ns)
 {
-    assert(pacer->asked + pacer->flight_count < PACER_MOST);
-    if (pacer->asked == 0)
+    if (preview && pacer->previews == 0)
         pacer->owed_since_ns = now_ns;
-    pacer->asked++;
+    pacer->previews += preview;
+    pacer->newest_is_preview = preview;
 }
 
-void pacer_dropped(struct pacer *pacer)
+/* Subtracts an answered or replaced request. */
+static void subtract(struct pacer *pacer, bool preview)
+{
+    pacer->previews -= preview && pacer->previews > 0;
+    if (pacer->asked == 0)
+        pacer->previews = 0;
+}
+
+void pacer_asked(struct pacer *pacer, bool preview, int64_t now_ns)
+{
+    assert(pacer->asked + pacer->flight_count < PACER_MOST);
+    pacer->asked++;
+    add_newest(pacer, preview, now_ns);
+}
+
+void pacer_replaced(struct pacer *pacer, bool preview, int64_t now_ns)
+{
+    if (preview && pacer->newest_is_preview)
+        return;
+    subtract(pacer, pacer->newest_is_preview);
+    add_newest(pacer, preview, now_ns);
+}
+
+void pacer_dropped(struct pacer *pacer, bool preview)
 {
     assert(pacer->asked > 0);
     pacer->asked--;
+    subtract(pacer, preview);
     pacer->owed_since_ns = 0;
 }
 
@@ -88,6 +114,7 @@ uint32_t pacer_sent(struct pacer *pacer, size_t bytes, const struct pacer_note *
 {
     assert(pacer->asked > 0 && pacer->flight_count < PACER_MOST);
     pacer->asked--;
+    subtract(pacer, note->counts);
     measure_making(pacer, note, now_ns);
     pacer->last_seq = pacer->last_seq == UINT32_MAX ? 1 : pacer->last_seq + 1;
     pacer->moved_on_ns = now_ns;

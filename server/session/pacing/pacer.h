@@ -32,7 +32,9 @@ struct pacer_flight {
 
 struct pacer {                              /* limits the frames under way to one client; initialise with pacer_init() */
     int asked;                              /* number of frames requested from the render service for the client and not sent yet */
-    /* monotonic time since which the render service has owed the client a frame: of the client's last frame, or of the request
+    int previews;                           /* number of these that are previews of a moving camera, whose time counts */
+    bool newest_is_preview;                 /* true: the newest request is such a preview */
+    /* monotonic time since which the render service has owed the client a preview: of the client's last frame, or of the request
        if that came later; 0: not known */
     int64_t owed_since_ns;
     struct pacer_flight flight[PACER_MOST]; /* frames sent and not acknowledged, oldest first */
@@ -54,10 +56,14 @@ enum pacer_ack { PACER_ACK_NEW, PACER_ACK_OLD, PACER_ACK_NEVER_SENT };
 void pacer_init(struct pacer *pacer);
 /* Returns whether another frame may be requested for the client now. */
 bool pacer_may_ask(const struct pacer *pacer, int64_t now_ns);
-/* Counts a frame that was requested. */
-void pacer_asked(struct pacer *pacer, int64_t now_ns);
-/* Counts a requested frame that will not be sent: the render service does not deliver it, or the session drops it. */
-void pacer_dropped(struct pacer *pacer);
+/* Counts a frame that was requested. preview: the frame is a preview of a moving camera, as `counts` in struct pacer_note; only
+   the time for such frames is measured. */
+void pacer_asked(struct pacer *pacer, bool preview, int64_t now_ns);
+/* Notes that the newest requested frame, whose drawing has not begun, was replaced by another one. preview: as for pacer_asked(). */
+void pacer_replaced(struct pacer *pacer, bool preview, int64_t now_ns);
+/* Counts a requested frame that will not be sent: the render service does not deliver it, or the session drops it. preview: as for
+   pacer_asked(). */
+void pacer_dropped(struct pacer *pacer, bool preview);
 /* Counts a frame whose first byte is being sent. Returns the frame's sequence number in the session. */
 uint32_t pacer_sent(struct pacer *pacer, size_t bytes, const struct pacer_note *note, int64_t now_ns);
 /* Notes that the socket accepted a part of the newest frame. all: true: this was the frame's last part. */
