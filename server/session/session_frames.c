@@ -182,6 +182,7 @@ static void make_moving(const struct session *session, struct frame_request *req
     request->view.height_px = scaled(request->view.height_px, rung.scale);
     request->quality = (struct encoder_params){ .quality = rung.quality };
     request->step = step;
+    request->scale = rung.scale;
 }
 
 static void make_still(const struct session *session, struct frame_request *request)
@@ -202,7 +203,8 @@ static void make_refreshed(const struct session *session, int64_t now_ns, struct
     request->view.tier = TIER_REFINED;
     request->quality = STILL;
     request->or_moving = !all_can_be_refined(session, now_ns) || session->delivery.pacer.asked > 0;
-    request->moving_quality.quality = quality_ladder_rung(ladder, quality_ladder_step(ladder, session->delivery.common_step)).quality;
+    request->step = quality_ladder_step(ladder, session->delivery.common_step);
+    request->moving_quality.quality = quality_ladder_rung(ladder, request->step).quality;
 }
 
 /* Returns whether the camera moves, so that a frame is needed soon in any case. That frame will also show the new readings,
@@ -433,6 +435,7 @@ struct encoded_frame *session_next_frame(struct session *session, int64_t now_ns
                                .counts = counts_for_size(session, request),
                                .of_data = request->of_data,
                                .step = request->step,
+                               .scale = request->scale,
                                .input_ns = request->view.input_ns,
                                .made_ns = encoded->made_ns };
     const struct frame *frame = encoded->packet->frame;

@@ -19,6 +19,7 @@ static struct pacer fresh(void)
 static uint32_t send_one(struct pacer *pacer, size_t bytes, int64_t now_ns)
 {
     struct pacer_note note = { .moving = true, .step = pacer->ladder.step };
+    note.scale = quality_ladder_rung(&pacer->ladder, note.step).scale;
     pacer_asked(pacer, false, now_ns);
     uint32_t seq = pacer_sent(pacer, bytes, &note, now_ns);
     pacer_wrote(pacer, true, now_ns);
@@ -334,6 +335,27 @@ TEST(steps_do_not_swing)
             before = pacer.ladder.step;
         }
         assert_in_range(changes, 0, 6);
+    }
+}
+
+/* Smaller pictures have fewer bytes. When the picture gets its size back, the ladder must expect the bytes of the larger one. The
+   picture of step 3 in half size is the same as that of step 5. */
+TEST(the_expected_bytes_follow_the_size_of_pictures)
+{
+    enum { HALF = 2 };
+    static const double FULL_BYTES = 106e3, HALF_BYTES = 38e3;
+    for (int way = 0; way < 2; way++) {
+        struct quality_ladder ladder = { .step = 3, .made.index = way == 0 ? HALF : 0 };
+        struct channel channel = { 0 };
+        double scale = quality_ladder_rung(&ladder, 3).scale;
+        quality_ladder_on_ack(&ladder, &channel, 3, scale, (size_t)(way == 0 ? HALF_BYTES : FULL_BYTES), NS_PER_S);
+        for (int index = 0; index <= HALF; index += HALF) {
+            ladder.made.index = index;
+            double expected = index == 0 ? FULL_BYTES : HALF_BYTES;
+            assert_true(fabs(quality_ladder_bytes(&ladder) / expected - 1) < 0.05);
+        }
+        ladder.step = 5;
+        assert_true(fabs(quality_ladder_bytes(&ladder) / HALF_BYTES - 1) < 0.05);
     }
 }
 

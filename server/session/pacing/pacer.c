@@ -152,7 +152,7 @@ static void arrived(struct pacer *pacer, int count, int64_t decode_ns, int64_t n
     memmove(pacer->flight, pacer->flight + count, (size_t)pacer->flight_count * sizeof(pacer->flight[0]));
     channel_on_ack(&pacer->channel, &ack);
     if (pacer->acked.note.moving)
-        quality_ladder_on_ack(&pacer->ladder, &pacer->channel, pacer->acked.note.step, pacer->acked.bytes, now_ns);
+        quality_ladder_on_ack(&pacer->ladder, &pacer->channel, pacer->acked.note.step, pacer->acked.note.scale, pacer->acked.bytes, now_ns);
 }
 
 enum pacer_ack pacer_acked(struct pacer *pacer, uint32_t seq, int64_t decode_ns, int64_t now_ns)

@@ -15,6 +15,7 @@ struct pacer_note {    /* properties of a sent frame that are needed when the cl
        for a camera at rest) in full quality */
     bool moving, full;
     int step;
+    double scale; /* preview: factor by which width and height are smaller than those of the view; 0: as at its step */
     bool counts;  /* true: the time for making the frame counts for the size of later previews */
     bool of_data; /* true: the frame was made because a reading changed; false: because of an input */
     /* monotonic: input_ns: time of the input or the changed reading; made_ns: when the frame was encoded */

@@ -46,6 +46,21 @@ static const struct {
     { { 42, 0.5 }, 0.19 }, { { 30, 0.5 }, 0.15 }, { { 30, 0.35 }, 0.09 }, { { 25, 0.25 }, 0.05 },
 };
 
+/* exponent by which the bytes of a frame depend on its scale, from the table above */
+static const double BYTES_BY_SCALE = 1.45;
+
+/* Returns the size in bytes of a frame of this step and scale, relative to a frame of step 0 and of full size. */
+static double relative_bytes(int step, double scale)
+{
+    return steps[step].bytes * (scale < steps[step].rung.scale ? pow(scale / steps[step].rung.scale, BYTES_BY_SCALE) : 1);
+}
+
+/* Returns the expected size in bytes of a preview at this step, in the present size of pictures. */
+static double expected_bytes(const struct quality_ladder *ladder, int step)
+{
+    return ladder->unit_bytes * relative_bytes(step, quality_ladder_rung(ladder, step).scale);
+}
+
 void quality_ladder_init(struct quality_ladder *ladder)
 {
     *ladder = (struct quality_ladder){ .step = QUALITY_LADDER_FIRST, .patience_ns = MIN_UP_DELAY_NS };
@@ -58,7 +73,7 @@ int quality_ladder_common(const struct quality_ladder *seen, const int counts[QU
         all += counts[i];
     while (all >= MIN_VIEWERS && 4 * (below += counts[step]) < 3 * all)
         step++;
-    while (step < QUALITY_LADDER_STEPS - 1 && all * seen->unit_bytes * steps[step].bytes > CROWD_BYTES)
+    while (step < QUALITY_LADDER_STEPS - 1 && all * expected_bytes(seen, step) > CROWD_BYTES)
         step++;
     return all >= MIN_VIEWERS ? step : -1;
 }
@@ -79,7 +94,7 @@ struct rung quality_ladder_rung(const struct quality_ladder *ladder, int step)
 
 double quality_ladder_bytes(const struct quality_ladder *ladder)
 {
-    return ladder->unit_bytes * steps[ladder->step].bytes;
+    return expected_bytes(ladder, ladder->step);
 }
 
 /* Returns the factor by which the limit on a frame's transfer time is larger at this step. It is 2 for a step whose next one
@@ -96,7 +111,7 @@ static int best_within(const struct quality_ladder *ladder, const struct channel
 {
     int step = 0;
     while (step < QUALITY_LADDER_STEPS - 1 &&
-           (double)channel_transfer_ns(channel, ladder->unit_bytes * steps[step].bytes) > (double)limit_ns * slack_factor(ladder, step))
+           (double)channel_transfer_ns(channel, expected_bytes(ladder, step)) > (double)limit_ns * slack_factor(ladder, step))
         step++;
     return step;
 }
@@ -175,9 +190,10 @@ void quality_ladder_on_made(struct quality_ladder *ladder, int64_t took_ns, int6
     ladder->made_ns *= picture_size_ratio(before, ladder->made.index, MADE_FIXED);
 }
 
-void quality_ladder_on_ack(struct quality_ladder *ladder, const struct channel *channel, int step, size_t bytes, int64_t now_ns)
+void quality_ladder_on_ack(struct quality_ladder *ladder, const struct channel *channel, int step, double scale, size_t bytes,
+                           int64_t now_ns)
 {
-    double unit = (double)bytes / steps[step].bytes;
+    double unit = (double)bytes / relative_bytes(step, scale > 0 ? scale : 1);
     /* replaces the guess, which was made from the number of pixels, by the first frame's real size */
     ladder->unit_bytes = ladder->known ? ladder->unit_bytes + SAMPLE_WEIGHT * (unit - ladder->unit_bytes) : unit;
     if (channel->ns_per_byte > 0) {

@@ -23,7 +23,7 @@ struct quality_ladder { /* chooses the quality and size of one client's frames; 
     struct picture_size decoded, made;
     double made_ns;     /* time that the server takes for one picture, smoothed */
     int64_t made_at_ns; /* monotonic time when made_ns was measured last; 0: never */
-    double unit_bytes;  /* estimated size in bytes of a frame of the best quality (step 0), smoothed */
+    double unit_bytes;  /* estimated size in bytes of a frame of the best quality (step 0) and of full size, smoothed */
     bool reprojects;    /* true: the client reprojects its newest picture to the present camera, so fewer and better frames suffice */
     bool known;         /* true: at least one frame was acknowledged, so unit_bytes is measured */
     int64_t good_since_ns;  /* monotonic time since which the network could carry a better step; 0: it cannot now */
@@ -48,8 +48,10 @@ int quality_ladder_common(const struct quality_ladder *seen, const int counts[QU
 /* Returns the quality step for this client: `common`, the step of all viewers of its view, or the client's own step if that is
    much worse. common negative: there is no common step, so the client's own step. */
 int quality_ladder_step(const struct quality_ladder *ladder, int common);
-/* Records that the client acknowledged a preview of that quality step and size in bytes, and adjusts the ladder's step. */
-void quality_ladder_on_ack(struct quality_ladder *ladder, const struct channel *channel, int step, size_t bytes, int64_t now_ns);
+/* Records that the client acknowledged a preview of that quality step and size in bytes, and adjusts the ladder's step. scale: as in
+   struct pacer_note. */
+void quality_ladder_on_ack(struct quality_ladder *ladder, const struct channel *channel, int step, double scale, size_t bytes,
+                           int64_t now_ns);
 /* Records that the server took took_ns to make a preview, and adjusts the picture size. This is the time since it began to owe
    the client a preview: since the client's last one, or since the request if that came later. A preview after a rest does not make
    pictures smaller, because what takes long may be the change of the field for which it was requested. */

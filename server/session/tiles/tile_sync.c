@@ -87,6 +87,7 @@ bool session_tiles_next_request(const struct session_tiles *tiles, uint64_t numb
         layout = tile_layout_scale(&layout, rung.scale);
         first.quality = (struct encoder_params){ .quality = rung.quality };
         first.step = step;
+        first.scale = rung.scale;
     }
     first.moving_quality.quality = rung.quality;
     first.view.width_px = tile_layout_width(&layout);
