@@ -142,7 +142,10 @@ static void compare(const struct pixel_field *field, const struct pixel_list *li
         if (plain.no_data)
             continue;
         double truth = truth_at(field, at_m);
-        assert_false(isnan(truth));
+        if (isnan(truth)) { /* only a sensor without limits is within reach, so the pixel shows no value */
+            assert_true(plain.no_limits);
+            continue;
+        }
         double off = fabs((double)values.value[i] - truth) / range * 255;
         if (!(off < 0.8) && tally->reported++ < 3)
             print_message("# off %g: value %g, truth %g, list %d, far %d, power %g, paper %d, reach %g, radius %g, decay %g\n", off,
