@@ -31,6 +31,21 @@ bool net_take_snapshot(struct server_context *server)
     return changed;
 }
 
+/* Returns what is not recorded, because a file cannot be used; see session_context. */
+static unsigned find_unrecorded(const struct server_context *server)
+{
+    const struct plant_services *plant = &server->params.plant;
+    bool lists = (plant->named_views && named_views_unread_file(plant->named_views)) || (plant->notes && notes_unread_file(plant->notes)) ||
+                 (plant->short_links && short_links_unread_file(plant->short_links)) ||
+                 (plant->wall_remote && wall_remote_unread_file(plant->wall_remote)) ||
+                 (plant->pairings && pairings_unread_file(plant->pairings));
+    bool readings = plant->historian && historian_error(plant->historian);
+    bool alarms = plant->alarm_service && alarm_service_journal_error(plant->alarm_service);
+    bool actions = audit_error(server->params.audit);
+    return (unsigned)readings << UNRECORDED_READINGS | (unsigned)alarms << UNRECORDED_ALARMS | (unsigned)actions << UNRECORDED_ACTIONS |
+           (unsigned)lists << UNRECORDED_LISTS;
+}
+
 bool net_check_links(struct server_context *server)
 {
     bool changed = false, any = false;
@@ -48,6 +63,9 @@ bool net_check_links(struct server_context *server)
     struct clock_state clock = clock_state_read(), *known = &server->session_context.readings.clock;
     changed |= known->set != clock.set || known->leap_s != clock.leap_s || clock_state_error_ms(known) != clock_state_error_ms(&clock);
     *known = clock;
+    unsigned unrecorded = find_unrecorded(server);
+    changed |= server->session_context.unrecorded != unrecorded;
+    server->session_context.unrecorded = unrecorded;
     counter_set(server->counters.clock_set, clock.set);
     counter_set(server->counters.clock_error, (int64_t)(clock.error_s * 1e6));
     counter_set(server->counters.clock_leap, clock.leap_s);

@@ -81,6 +81,9 @@ struct session_text_caches {
     char **lists_said;
 };
 
+/* Kinds of entries that the daemon records in files. UNRECORDED_LISTS: views, notes, short links, orders to walls and paired displays. */
+enum unrecorded { UNRECORDED_READINGS, UNRECORDED_ALARMS, UNRECORDED_ACTIONS, UNRECORDED_LISTS, UNRECORDED_COUNT };
+
 /* The event loop sets the members. Sessions change only members whose comments say so. */
 struct session_context {
     const struct plant *plant;
@@ -95,6 +98,7 @@ struct session_context {
     /* on a core that leads another one: what engineers learn about the standby (`standby` in the message `status`); NULL: there
        is no pair, or this core does not lead */
     json_t *standby;
+    unsigned unrecorded;     /* bit mask of what is not recorded, because a file cannot be used (1 << enum unrecorded) */
     bool imports;            /* true: engineers may import plants */
     const char *signing_key; /* id of the key that signs pictures; NULL: pictures are not signed */
     unsigned codecs;         /* bit mask of the codecs that work here (1 << enum wire_codec); 0: JPEG and PNG */

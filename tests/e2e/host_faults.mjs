@@ -7,7 +7,8 @@ import { tmpdir } from 'node:os';
 import { basename, join } from 'node:path';
 import { after, test } from 'node:test';
 import { missingClocks, SetClock } from './support/clocks.mjs';
-import { get } from './support/plain_client.mjs';
+import { DESKTOP, shoot, waitForPicture, withPage } from './support/browser.mjs';
+import { get, PlainClient } from './support/plain_client.mjs';
 import { notBuilt, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 import { until } from './support/until.mjs';
 
@@ -149,6 +150,16 @@ test('log, /readyz and a metric name each other file that a newer version wrote 
             'the file and the command that moves it away; these files are not used, because they cannot be read: views.json, ' +
             'notes.json: the log says why\n');
         assert.equal(readFileSync(join(history, 'notes.json'), 'utf8'), '{"version": 9, "notes": []}');
+        const client = await PlainClient.open(plant.port);
+        await client.hello();
+        assert.deepEqual((await client.text('status')).unrecorded, ['alarms', 'lists']);
+        client.close();
+        await withPage(`http://127.0.0.1:${plant.port}/`, DESKTOP, async (page) => {
+            await waitForPicture(page);
+            await page.waitForSelector('.unrecorded');
+            assert.equal(await page.textContent('.unrecorded output'), 'Not recorded: alarm changes, views and notes');
+            await shoot(page, 'unrecorded');
+        });
         await plant.daemon.stop();
         for (const name of ['alarms.sqlite', 'notes.json', 'views.json'])
             rmSync(join(history, name));

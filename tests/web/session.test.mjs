@@ -426,6 +426,10 @@ test('health: each state has its own kind and text', () => {
     assert.deepEqual([session.model.clockSet, session.model.clockErrorMs, session.model.leapS], [false, null, 0]);
     sockets[0].say({ type: 'status', time_us: 1, live: true, clock_set: true, clock_error_ms: 10, leap_s: 1, links: [] });
     assert.deepEqual([session.model.clockSet, session.model.clockErrorMs, session.model.leapS], [true, 10, 1]);
+    let unrecorded;
+    session.on('status', (message) => { ({ unrecorded } = message); });
+    sockets[0].say({ type: 'status', time_us: 1, live: true, clock_set: true, unrecorded: ['alarms'], links: [] });
+    assert.deepEqual(unrecorded, ['alarms']);
     said([{ ...link('plc1', true), simulated: true }]);
     assert.equal(now().words, 'Simulated');
     said([{ ...link('plc1', true), simulated: true }, link('plc2', false)]);

@@ -48,6 +48,7 @@ const MODULES = {
     timings: { file: 'help/timings', type: 'TimingsPanel', styles: ['help/timings'] },
     token: { file: 'sharing/token', type: 'TokenDialog', styles: ['help/help', 'sharing/account'], fills: 'token' },
     trends: { file: 'trends/trends', type: 'Trends', styles: ['trends/trends'], fills: 'trends' },
+    unrecorded: { file: 'toolbar/unrecorded', type: 'Unrecorded', styles: ['toolbar/unrecorded'] },
     warp: { file: 'picture/warp', type: 'Warp', wordless: true },
     views: { file: 'views/views', type: 'Views', styles: ['common/panel'], fills: 'views' },
 };

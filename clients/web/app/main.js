@@ -169,7 +169,11 @@ session.on('welcome', () => {
         modules.get('outside');
     viewport.invalidate();
 });
-session.on('status', () => status.show());
+session.on('status', ({ unrecorded = [] }) => {
+    status.show();
+    if (unrecorded.length > 0 || modules.there('unrecorded'))
+        modules.use('unrecorded', (part) => part.show(unrecorded));
+});
 // Clears the page and asks for a token, after the server denied access or locked the session for inactivity.
 session.on('denied', ({ code }) => {
     document.body.classList.add('denied');

@@ -571,7 +571,7 @@ const HANDLERS = {
         this.model.clockSet = message.clock_set !== false;
         this.model.clockErrorMs = message.clock_error_ms ?? null;
         this.model.leapS = message.leap_s ?? 0;
-        this.emit('status');
+        this.emit('status', message);
     },
 
     error(message) {

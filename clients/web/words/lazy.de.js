@@ -690,6 +690,14 @@ undo: Zurück zu {kept} …
 changed: Nichts wurde bestätigt: die Liste hat sich geändert. Bitte die Zahl prüfen und noch einmal bestätigen.
 undone: Zurückgenommen. {kept} gilt wieder.
 
+[unrecorded]
+title: Nicht aufgezeichnet: {what}
+why: Der Server kann einige seiner Dateien nicht verwenden; den Grund nennt sein Protokoll.
+readings: Messwerte
+alarms: Alarmänderungen
+actions: Audit-Trail
+lists: Ansichten und Notizen
+
 [standby]
 plant: Anlagendatei
 tags: Messstellenliste

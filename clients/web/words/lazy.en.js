@@ -689,6 +689,14 @@ undo: Undo: back to {kept} …
 changed: Nothing was accepted: the list has changed. Check the count and accept again.
 undone: Undone. {kept} applies again.
 
+[unrecorded]
+title: Not recorded: {what}
+why: The server cannot use some of its files; the server's log says why.
+readings: readings
+alarms: alarm changes
+actions: audit trail
+lists: views and notes
+
 [standby]
 plant: plant file
 tags: tag list

@@ -680,6 +680,14 @@ undo: 되돌리기: {kept} …
 changed: 확정되지 않았습니다. 목록이 바뀌었습니다. 개수를 확인하고 다시 확정하세요.
 undone: 되돌렸습니다. {kept}이(가) 다시 적용됩니다.
 
+[unrecorded]
+title: 기록 안 됨: {what}
+why: 서버가 일부 파일을 사용할 수 없습니다. 이유는 서버 로그에 있습니다.
+readings: 측정값
+alarms: 알람 변경
+actions: 감사 기록
+lists: 뷰와 메모
+
 [standby]
 plant: 플랜트 파일
 tags: 태그 목록

@@ -60,7 +60,18 @@ char *reply_tags_text(const struct plant *plant, const struct snapshot *snapshot
     return json_text(object, READING_DIGITS);
 }
 
-char *reply_status_text(const struct session_context *context, bool for_engineer, int64_t now_utc_ns)
+/* Returns the names of what is not recorded. */
+static json_t *unrecorded(unsigned which)
+{
+    static const char *const names[UNRECORDED_COUNT] = { "readings", "alarms", "actions", "lists" };
+    json_t *list = json_array();
+    for (int i = 0; i < UNRECORDED_COUNT; i++)
+        if (which & 1u << i)
+            json_array_append_new(list, json_string(names[i]));
+    return list;
+}
+
+char *reply_status_text(const struct session_context *context, enum role role, int64_t now_utc_ns)
 {
     json_t *links = json_array();
     for (size_t i = 0; i < context->plant->source_count; i++) {
@@ -78,7 +89,9 @@ char *reply_status_text(const struct session_context *context, bool for_engineer
         json_object_set_new(status, "clock_error_ms", json_integer(clock_state_error_ms(&context->readings.clock)));
     if (context->readings.clock.leap_s)
         json_object_set_new(status, "leap_s", json_integer(context->readings.clock.leap_s));
-    if (for_engineer && context->standby)
+    if (role >= ROLE_OPERATOR && context->unrecorded)
+        json_object_set_new(status, "unrecorded", unrecorded(context->unrecorded));
+    if (role == ROLE_ENGINEER && context->standby)
         json_object_set(status, "standby", context->standby);
     return json_text(status, DIGITS);
 }

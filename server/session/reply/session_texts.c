@@ -149,7 +149,7 @@ bool session_next_text(struct session *session, int64_t now_ns, int64_t now_utc_
         add_owned(session, out, wall_remote_pointers_text(context->services->wall_remote, session->owed.pointers_sent));
         session->owed.pointers_sent = wall_remote_pointer_number(context->services->wall_remote);
     } else if (status_due(session)) {
-        add_owned(session, out, reply_status_text(context, session->identity.role == ROLE_ENGINEER, now_utc_ns));
+        add_owned(session, out, reply_status_text(context, session->identity.role, now_utc_ns));
         session->owed.status = false;
     } else if (alarms_due(session)) {
         add_owned(session, out,
