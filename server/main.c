@@ -183,11 +183,17 @@ static bool is_loopback(const char *address)
     return inet_pton(AF_INET6, address, &six) == 1 && IN6_IS_ADDR_LOOPBACK(&six);
 }
 
+/* Prints where the options are listed. The whole list is too long to follow an error, which would no longer be on the screen. */
+static int point_to_help(void)
+{
+    fprintf(stderr, "usage: plantcastd PLANT.yaml [OPTION ...]; plantcastd --help lists the options\n");
+    return USAGE;
+}
+
 static int usage_error(const char *what, const char *value)
 {
-    fprintf(stderr, "plantcastd: %s '%s'\n\n", what, value);
-    print_usage(stderr);
-    return USAGE;
+    fprintf(stderr, "plantcastd: %s '%s'\n", what, value);
+    return point_to_help();
 }
 
 enum {
@@ -332,7 +338,7 @@ static int take_access_option(int option, struct access_params *access)
         return add_origin(access, optarg) ? -1 : usage_error("--origin: expected SCHEME://HOST[:PORT] (at most 16), found", optarg);
     case OPTION_LIMIT:
         return quotas_parse(&access->quotas, optarg) ? -1 : usage_error("--limit: unknown limit, or value out of range:", optarg);
-    default: /* unknown option, for which getopt has already printed an error */ print_usage(stderr); return USAGE;
+    default: /* unknown option, for which getopt has already printed an error */ return point_to_help();
     }
 }
 
@@ -414,7 +420,8 @@ static int take_option(int option, struct server_params *params, int (**task)(co
     case OPTION_LISTEN:
         params->address = strcmp(optarg, "localhost") == 0 ? "127.0.0.1" : optarg;
         return access_name_is_address(params->address) ? -1 : usage_error("--listen: expected an IP address, found", optarg);
-    case OPTION_PORT: return parse_int(optarg, 0, 65535, &params->port) ? -1 : usage_error("--port: expected a port, found", optarg);
+    case OPTION_PORT:
+        return parse_int(optarg, 0, 65535, &params->port) ? -1 : usage_error("--port: expected a number from 0 to 65535, found", optarg);
     case OPTION_FIELD:
         return parse_field(optarg, &params->per_fragment) ? -1 : usage_error("--field: expected vertices or per-fragment, found", optarg);
     case OPTION_GL: return gl_kind_parse(optarg, &params->gl) ? -1 : usage_error("--gl: unknown OpenGL context", optarg);

@@ -27,11 +27,19 @@ struct tls {
     time_t warned_s;  /* time when the last warning about the certificate's expiry was logged, in seconds of UTC; 0: none yet */
 };
 
+/* Returns why a file cannot be loaded. OpenSSL lists the cause first, and then the functions that failed for that reason. */
 static const char *why(char out[200])
 {
-    unsigned long code = ERR_peek_last_error();
-    if (code)
-        ERR_error_string_n(code, out, 200);
+    unsigned long code = ERR_peek_error();
+    const char *reason = ERR_reason_error_string(code);
+    if (ERR_SYSTEM_ERROR(code))
+        snprintf(out, 200, "%s", strerror(ERR_GET_REASON(code)));
+    else if (ERR_GET_LIB(code) == ERR_LIB_PEM && ERR_GET_REASON(code) == PEM_R_NO_START_LINE)
+        snprintf(out, 200, "the file contains no certificate, or no private key, in PEM format");
+    else if (ERR_GET_LIB(code) == ERR_LIB_X509 && ERR_GET_REASON(code) == X509_R_KEY_VALUES_MISMATCH)
+        snprintf(out, 200, "this private key does not belong to the certificate");
+    else if (code)
+        snprintf(out, 200, "%s (OpenSSL error %08lX)", reason ? reason : "unknown reason", code);
     else
         snprintf(out, 200, "%s", errno ? strerror(errno) : "no reason given");
     ERR_clear_error();

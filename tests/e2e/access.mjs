@@ -243,8 +243,10 @@ test('the daemon refuses to start for other hosts without TLS and tokens, or wit
         [['--listen', '0.0.0.0'], /--open-viewers/], [['--listen', '0.0.0.0', '--tokens', tokensFile], /TLS and tokens/],
         [['--tokens', bad], /other users may read/], [['--tokens', path('none')], /No such file/],
         [['--tls-cert', path('first.pem')], /give both --tls-cert and --tls-key/],
-        [['--tls-cert', path('first.pem'), '--tls-key', path('second.key')], /TLS: .*key/],
-        [['--tls-cert', plant.file, '--tls-key', path('first.key')], /TLS: .*plant\.yaml/], [['--behind-proxy'], /needs --tokens/],
+        [['--tls-cert', path('first.pem'), '--tls-key', path('second.key')], /TLS: \S+second\.key: this private key does not belong to/],
+        [['--tls-cert', plant.file, '--tls-key', path('first.key')], /TLS: \S+plant\.yaml: the file contains no certificate/],
+        [['--tls-cert', path('none.pem'), '--tls-key', path('first.key')], /TLS: \S+none\.pem: No such file or directory$/m],
+        [['--behind-proxy'], /needs --tokens/],
         [['--behind-proxy', '--tokens', tokensFile], /--host/],
         [['--behind-proxy', '--host', 'x', '--tokens', tokensFile, '--trust-local'], /--trust-local cannot be combined with/],
     ];
@@ -253,8 +255,12 @@ test('the daemon refuses to start for other hosts without TLS and tokens, or wit
         assert.equal(result.code, 1, args.join(' '));
         assert.match(result.err, why);
     }
-    for (const args of [['--limit', 'sessions=none'], ['--limit', 'sesions=4'], ['--host', 'http://x'], ['--origin', 'x']])
-        assert.equal(start(...args).code, 2, args.join(' '));
+    for (const args of [['--limit', 'sessions=none'], ['--limit', 'sesions=4'], ['--host', 'http://x'], ['--origin', 'x'],
+        ['--prot', '1']]) {
+        const { code, err } = start(...args);
+        assert.equal(code, 2, args.join(' '));
+        assert.ok(err.split('\n').length < 4, `the error stays on the screen: ${err}`);
+    }
     unlinkSync(bad);
 });
 
