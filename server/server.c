@@ -3,6 +3,7 @@
 #include "server.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <limits.h>
 #include <pthread.h>
 #include <signal.h>
@@ -10,6 +11,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -49,6 +52,7 @@ struct server {
     struct plant_runtime_context context;
     struct plant_runtime *runtime;
     struct reload *reload;
+    int history_lock;            /* descriptor that locks the history folder; 0 or less: none */
     struct node_id node_id;      /* unique identity of this core, even among cores of the same name (corelink/node_id.h) */
     struct lease_keeper *keeper; /* keeps the lease that decides which of two cores leads; NULL: this core is alone */
     bool follows, lost;          /* follows: another core polls the devices; lost: this core had the leadership lease and lost it */
@@ -454,6 +458,32 @@ static bool make_keeper(struct server *server)
     return server->keeper;
 }
 
+/* Locks the history folder until this process ends, because two daemons would overwrite each other's lists, and record all readings
+   and alarms twice. Waits for HISTORY_WAIT_MS, for a daemon that is just ending. If the folder cannot be opened or locked at all, the
+   daemon starts nevertheless, and whatever writes to the folder logs why. */
+static bool lock_history_folder(struct server *server)
+{
+    enum { HISTORY_WAIT_MS = 5000, LOOK_MS = 50 };
+    const char *folder = server->runtime->services.history_folder;
+    if (!folder)
+        return true;
+    mkdir(folder, 0777);
+    server->history_lock = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (server->history_lock < 0)
+        return true;
+    bool locked = flock(server->history_lock, LOCK_EX | LOCK_NB) == 0, used = !locked && errno == EWOULDBLOCK;
+    for (int ms = 0; used && ms < HISTORY_WAIT_MS && !atomic_load(&told_to_end); ms += LOOK_MS) {
+        nanosleep(&(struct timespec){ .tv_nsec = LOOK_MS * NS_PER_MS }, NULL);
+        used = flock(server->history_lock, LOCK_EX | LOCK_NB) != 0;
+    }
+    if (used)
+        log_err(server->log,
+                "%s: another daemon records in this history folder: stop that daemon, or give this one its own folder with "
+                "--history",
+                folder);
+    return !used;
+}
+
 static bool start_agent(struct server *server)
 {
     const struct server_params *params = &server->params;
@@ -488,9 +518,9 @@ static bool server_start(struct server *server)
     server->web = find_web(server->params.web);
     reload_count(server->counters, server->runtime->plant->files.hash, true);
     supervision_starting(server->supervision, "drawing the first picture");
-    return make_keeper(server) && plant_runtime_start_recording(server->runtime, NULL) && plant_runtime_start_sources(server->runtime) &&
-           plant_runtime_start_render_service(server->runtime, NULL, 0) && start_import(server) && start_agent(server) &&
-           start_net(server) && (!server->keeper || lease_keeper_start(server->keeper));
+    return make_keeper(server) && lock_history_folder(server) && plant_runtime_start_recording(server->runtime, NULL) &&
+           plant_runtime_start_sources(server->runtime) && plant_runtime_start_render_service(server->runtime, NULL, 0) &&
+           start_import(server) && start_agent(server) && start_net(server) && (!server->keeper || lease_keeper_start(server->keeper));
 }
 
 /* Destroys the parts of the daemon, consumers before producers. */
@@ -512,6 +542,8 @@ static void server_finish(struct server *server)
     file_writer_destroy(&server->file_writer);
     lease_keeper_destroy(&server->keeper); /* gives the leadership lease back, now that nothing polls devices any more */
     node_id_release(&server->node_id);
+    if (server->history_lock > 0)
+        close(server->history_lock);
     workers_destroy(&server->workers);
     supervision_destroy(&server->supervision);
     counters_destroy(&server->counters);

@@ -35,6 +35,20 @@ const tagUntil = (client, index, what, question, timeoutMs) => client.until(`tag
     return row && question(row) ? row : null;
 }, timeoutMs);
 
+test('a second daemon does not record in the same history folder, and starts once the first one has ended', { skip }, async () => {
+    const own = await TinyPlant.create(), history = join(own.folder, 'history');
+    try {
+        await own.start('--history', history);
+        const { code, err } = runProgram('plantcastd', [own.file, '--port', '0', '--history', history]);
+        assert.equal(code, 1, err);
+        assert.match(err, /history: another daemon records in this history folder: stop that daemon, or give this one its own folder/);
+        await own.daemon.stop();
+        await own.startDaemon('--history', history);
+    } finally {
+        await own.destroy();
+    }
+});
+
 test('each wrong command line gives its exit code and reason', { skip }, async () => {
     const busy = createServer().listen(0, '127.0.0.1');
     await new Promise((done) => busy.once('listening', done));

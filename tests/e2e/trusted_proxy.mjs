@@ -112,7 +112,8 @@ test('an action through a renderer is recorded with the client\'s address', opti
 });
 
 test('forwarded headers from a peer that is no trusted proxy are ignored', options, async () => {
-    other = await nodes.start(['--port', String(await freePort()), '--trusted-proxy', '198.51.100.1', ...served('other')]);
+    other = await nodes.start(['--port', String(await freePort()), '--history', path('other'), '--trusted-proxy', '198.51.100.1',
+        ...served('other')]);
     const direct = (host, headers) => secure(other, headers, { host }).then(({ status }) => status);
     assert.equal(await direct(HOST, { Authorization: `Bearer ${WRONG}` }), 401);
     assert.equal((await recorded('other', isRefused)).from, HOST);
