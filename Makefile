@@ -127,7 +127,7 @@ ifc := preprocess/import/readers/package-lock.json $(wildcard preprocess/import/
 $(bin)/plantcast-import-ifc/ifc.mjs: $(ifc)
 	@echo "  IFC  $(@D)"; deploy/vendor_ifc $(build)/npm-ifc $(@D); [ ! -f $@ ] || touch $@
 # Generated modules of the page: its icons, the constants that it shares with the shaders, and its version.
-page := $(filter-out clients/web/made/%,$(wildcard clients/web/*.* clients/web/*/*.* clients/web/*/*/*.*))
+page := $(filter-out clients/web/made/%,$(wildcard $(addprefix clients/web/,*.* */*.* */*/*.* */*/*/*.*)))
 clients/web/made/version.js: deploy/stamp deploy/join $(page) clients/web/vendor/uPlot.js shaders/constants.glsl
 	@echo "  WEB  $(@D)"; deploy/stamp clients/web shaders/constants.glsl deploy/join
 # The page as the daemon serves it, with the modules of its first load joined.

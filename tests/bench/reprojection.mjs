@@ -18,6 +18,8 @@ const CASES = ['orbit_1', 'orbit_3', 'orbit_6', 'nearer_5', 'nearer_10', 'nearer
 const OFF = 16;          // a pixel counts as different if a channel differs by at least this much, of 255
 const NEAREST = 0.05;    // same value as in app/picture/warp.js
 const MOST_ERROR = 0.03; // a value read from a colour counts as correct up to this error, as a fraction of the range
+const UNLIKE = 32;       // distance of two colours, in red, green and blue of 0..255, from which they are not like each other
+const SAME_HUE = 32;     // as in app/picture/painters/gl_painter.js
 const REDUCED = 4, LATTICE_PX = 14, MARK = 0.08 * 255; // as in app/picture/warp.js
 
 const load = (name) => ({
@@ -25,10 +27,12 @@ const load = (name) => ({
     pixels: readFileSync(join(folder, `${name}.bgrx`)), depth: readFileSync(join(folder, `${name}.depth`)),
 });
 
-// Draws the first picture's mesh as seen by another camera. Returns, for each pixel drawn, the index of the pixel of the first
-// picture that it shows; -1: nothing is drawn there.
+// Draws the first picture's mesh as seen by another camera. Returns, for each pixel drawn, `shown`, the index of the pixel of
+// the first picture that it shows (-1: nothing is drawn there); `places`, the position there (u, v); `isMasked`, whether the
+// picture's depth has a step there.
 function rasterize({ vertices, indices }, matrix, grid, width, height) {
     const shown = new Int32Array(width * height).fill(-1), depths = new Float64Array(width * height).fill(Infinity);
+    const places = new Float64Array(2 * width * height), isMasked = new Uint8Array(width * height);
     const count = vertices.length / FLOATS, clip = new Float64Array(count * 4);
     for (let i = 0; i < count; i++)
         for (let row = 0; row < 4; row++)
@@ -62,10 +66,12 @@ function rasterize({ vertices, indices }, matrix, grid, width, height) {
                 if (kind > 0.5 && near !== kind < 1.5)
                     continue;
                 depths[at] = z;
+                isMasked[at] = kind > 0.5 ? 1 : 0;
+                places.set([u, v], 2 * at);
                 shown[at] = Math.min(height - 1, Math.max(0, Math.floor(v))) * width + Math.min(width - 1, Math.max(0, Math.floor(u)));
             }
     }
-    return shown;
+    return { shown, places, isMasked };
 }
 
 const luma = (pixels, i) => 0.114 * pixels[4 * i] + 0.587 * pixels[4 * i + 1] + 0.299 * pixels[4 * i + 2];
@@ -160,11 +166,34 @@ function greyAt(greys, x, y, width, height) {
     return grey + (line ? MARK * wide : 0) * (grey > 0.4 * 255 ? -1 : 1);
 }
 
-function warped({ pixels, width, height }, shown) {
-    const out = Buffer.alloc(pixels.length);
+// Returns whether two pixels have almost the same hue, as in the page's shader.
+const haveSameHue = (pixels, a, b) => [0, 1].every((c) =>
+    Math.abs(pixels[a + c] - pixels[a + c + 1] - pixels[b + c] + pixels[b + c + 1]) <= SAME_HUE);
+
+// Writes the colour of pixel `i` of the warped picture to `out`: a mixture of up to four neighbouring pixels of the first
+// picture, as in the page's shader.
+function mix({ pixels, width, height }, { grid, shown, places, isMasked }, i, out) {
+    const bit = grid.cellPx / grid.maskSide, wide = grid.columns * grid.maskSide, x = places[2 * i] - 0.5, y = places[2 * i + 1] - 0.5;
+    const isNear = (column, row) => grid.masks[Math.floor(row / bit) * wide + Math.floor(column / bit)] > 127;
+    const own = shown[i], left = Math.floor(x), top = Math.floor(y), ownSide = isNear(own % width, Math.floor(own / width));
+    const sum = [0, 0, 0];
+    let shares = 0;
+    for (let k = 0; k < 4; k++) {
+        const column = Math.max(0, Math.min(width - 1, left + (k & 1))), row = Math.max(0, Math.min(height - 1, top + (k >> 1)));
+        const share = Math.abs(1 - (k & 1) - x + left) * Math.abs(1 - (k >> 1) - y + top), at = 4 * (row * width + column);
+        if (isMasked[i] && isNear(column, row) !== ownSide || !haveSameHue(pixels, at, 4 * own))
+            continue;
+        sum.forEach((_, c) => { sum[c] += share * pixels[at + c]; });
+        shares += share;
+    }
+    sum.forEach((value, c) => { out[4 * i + c] = Math.round(value / shares); });
+}
+
+function warped(first, drawn) {
+    const { pixels, width, height } = first, { shown } = drawn, out = Buffer.alloc(pixels.length);
     for (let i = 0; i < shown.length; i++)
         if (shown[i] >= 0)
-            pixels.copy(out, 4 * i, 4 * shown[i], 4 * shown[i] + 4);
+            mix(first, drawn, i, out);
     const greys = greysOf(levelsOf(out, shown, width, height));
     for (let i = 0; i < shown.length; i++)
         if (shown[i] < 0)
@@ -191,17 +220,28 @@ function movedPicture(first, second) {
     const matrix = warpMatrix(grid, first, second, NEAREST / Math.abs(grid.base + grid.levels * grid.unit));
     if (isByProcessor)
         return movedByProcessor(first, { grid, mesh }, matrix);
-    const shown = rasterize(mesh, matrix, grid, first.width, first.height);
-    return { shown, pixels: warped(first, shown) };
+    const drawn = { grid, ...rasterize(mesh, matrix, grid, first.width, first.height) };
+    return { shown: drawn.shown, pixels: warped(first, drawn) };
 }
 
-// Returns a function that returns the index of a pixel's colour in the colour map, in pictures of the flat look (no shading);
-// -1 if the map lacks the colour.
+// Returns a function that returns the index of the colour of the map that is most like a pixel, in pictures of the flat look (no
+// shading); -1 if no colour of the map is like it.
 function reader(map) {
-    const places = new Map();
-    for (let i = 0; i < 256; i++)
-        places.set(map[3 * i] | map[3 * i + 1] << 8 | map[3 * i + 2] << 16, i);
-    return (pixels, i) => places.get(pixels[4 * i + 2] | pixels[4 * i + 1] << 8 | pixels[4 * i] << 16) ?? -1;
+    const known = new Map();
+    const find = (red, green, blue) => {
+        let best = -1, least = UNLIKE ** 2;
+        for (let i = 0; i < 256; i++) {
+            const by = (map[3 * i] - red) ** 2 + (map[3 * i + 1] - green) ** 2 + (map[3 * i + 2] - blue) ** 2;
+            [best, least] = by < least ? [i, by] : [best, least];
+        }
+        return best;
+    };
+    return (pixels, i) => {
+        const [blue, green, red] = pixels.subarray(4 * i, 4 * i + 3), key = red | green << 8 | blue << 16;
+        if (!known.has(key))
+            known.set(key, find(red, green, blue));
+        return known.get(key);
+    };
 }
 
 // Returns the share of the warped pixels with a colour of the map whose value equals that of the true picture.

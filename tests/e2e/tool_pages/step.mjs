@@ -324,8 +324,38 @@ async function faultsOf(page, seen) {
     return { off, beyond };
 }
 
+// Draws pictures of four columns with the WebGL painter, moved to the right by a quarter of a pixel. Returns the red of a row of a picture
+// with two shades of red; the hues of one with red and blue; the red of one with two shades on two surfaces.
+const paintMoved = (page) => page.evaluate(async () => {
+    const { GlPainter } = await import('/app/picture/painters/gl_painter.js');
+    const canvas = document.createElement('canvas'), gl = canvas.getContext('webgl2', { antialias: false }), painter = new GlPainter(gl);
+    const SIZE = { width: 4, height: 4 }, BOX = { left: 0, top: 0, ...SIZE };
+    const matrix = [0.5, 0, 0, 0, 0, -0.5, 0, 0, 0, 0, 1, 0, 0.125 - 1, 1, 0, 1];
+    const paint = (columns, kinds) => {
+        const picture = new ImageData(SIZE.width, SIZE.height);
+        picture.data.set(Array.from({ length: 4 }, () => columns.flat()).flat());
+        const vertices = kinds.flatMap((kind) => [[0, 0], [4, 0], [0, 4], [4, 4]].flatMap(([x, y]) => [x, y, 0, kind]));
+        const indices = kinds.flatMap((_, k) => [0, 2, 1, 1, 2, 3, 0, 1, 2, 1, 3, 2].map((i) => 4 * k + i)); // seen from both sides
+        const masks = Uint8Array.from({ length: 16 }, (_, i) => (i % 4 < 2 ? 255 : 0));
+        const grid = { x: 0, y: 0, ...SIZE, cellPx: 4, maskSide: 4, columns: 1, rows: 1, masks };
+        painter.resize(SIZE.width, SIZE.height);
+        painter.load(picture, [{ grid, mesh: { vertices: new Float32Array(vertices), indices: new Uint32Array(indices) } }]);
+        painter.paint([matrix], [BOX], 14, 0);
+        const seen = new Uint8Array(16);
+        gl.readPixels(0, 1, 4, 1, gl.RGBA, gl.UNSIGNED_BYTE, seen);
+        return [0, 1, 2, 3].map((i) => seen.slice(4 * i, 4 * i + 4));
+    };
+    const red = [200, 0, 0, 255], dark = [100, 80, 80, 255], light = [200, 180, 180, 255];
+    const blue = [0, 0, 200, 255], redsOf = (pixels) => pixels.map(([value]) => value);
+    const hueOf = ([r, , b]) => (r > 0 && b > 0 ? 'mixed' : r > 0 ? 'red' : 'blue');
+    return { shades: redsOf(paint([dark, dark, light, light], [0])),
+        hues: paint([red, red, blue, blue], [0]).map(hueOf),
+        surfaces: redsOf(paint([dark, dark, light, light], [1, 2])) };
+});
+
 const followsHand = (painter, ...script) => async (t) => {
     const slow = await Relay.open(plant.port, { bytesPerS: 4e6, delayMs: 300 });
+    t.after(() => slow.close()); // also if the page cannot be opened
     const { page, errors, close } = await openPage(`http://127.0.0.1:${slow.port}/?codec=jpeg`, SCREEN,
         ...script);
     try {
@@ -370,12 +400,14 @@ const followsHand = (painter, ...script) => async (t) => {
             rest = await still(page);
         while (rest.news > 0); // repeats if the server sent a message meanwhile, such as a reading that arrived late on a busy machine
         assert.deepEqual(rest, { frames: 0, draws: 0, timers: [], news: 0 }, 'a still view causes no frames, draws or timers');
-        if (painter === 'GlPainter')
+        if (painter === 'GlPainter') {
+            assert.deepEqual(await paintMoved(page), { shades: [100, 100, 175, 200], hues: ['red', 'red', 'blue', 'blue'],
+                surfaces: [100, 100, 186, 200] }, 'pixels are mixed only with pixels of their hue and surface');
             await loseContext(page);
+        }
         assert.deepEqual(errors, []);
     } finally {
         await close();
-        slow.close();
     }
 };
 
@@ -385,6 +417,7 @@ test(`${name}, by the processor`, options, followsHand('CpuPainter'));
 
 test('after the window changes its size, warped pictures are true again', options, async (t) => {
     const slow = await Relay.open(plant.port, { bytesPerS: 4e6, delayMs: 150 });
+    t.after(() => slow.close());
     const { page, errors, close } = await openPage(`http://127.0.0.1:${slow.port}/?codec=jpeg`, { viewport: { width: 900, height: 600 } });
     try {
         await look(page);
@@ -414,6 +447,5 @@ test('after the window changes its size, warped pictures are true again', option
         assert.deepEqual(errors, []);
     } finally {
         await close();
-        slow.close();
     }
 });

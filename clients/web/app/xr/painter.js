@@ -118,6 +118,7 @@ export class Painter {
         gl.useProgram(mesh.program);
         gl.uniformMatrix4fv(mesh.at('warp'), false, eyeMatrix(grid, camera, eye, NEAREST_M));
         gl.uniform2f(mesh.at('origin'), grid.x, grid.y);
+        gl.uniform2f(mesh.at('extent'), grid.width, grid.height);
         gl.uniform2fv(mesh.at('size'), size);
         gl.uniform1f(mesh.at('bit'), grid.cellPx / grid.maskSide);
         gl.uniform1i(mesh.at('masks'), 1);

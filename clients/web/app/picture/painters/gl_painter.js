@@ -12,23 +12,42 @@ void main() {
     kind = vertex.w;
     gl_Position = warp * vec4(vertex.xyz, 1.0);
 }`;
-// Draws the picture on its depth mesh. Where the picture's depth has a step, edge pixels of the farther surface contain a part of the
-// nearer surface's colour. They become grey, because users would read the mixed colour as a value.
+// Draws the picture on its depth mesh. Interpolates between neighbouring pixels of the picture, but only if they belong to the
+// same surface and have almost the same hue: users would read a mixture of two colours as the value between them. Where the
+// picture's depth has a step, edge pixels of the farther surface contain a part of the nearer surface's colour. They become
+// grey, for the same reason.
 export const PICTURE = `#version 300 es
 precision highp float;
 in vec2 at;
 flat in float kind;
 uniform sampler2D picture, masks;
-uniform vec2 origin, size;
+uniform vec2 origin, extent, size;
 uniform float bit;
 out vec4 colour;
+const float SAME_HUE = 32.0 / 255.0; // greatest difference of red - green and of green - blue between pixels that are mixed
+vec3 pixelAt(vec2 place) {
+    return texelFetch(picture, ivec2((origin + place) / size * vec2(textureSize(picture, 0))), 0).rgb;
+}
+vec2 hueOf(vec3 pixel) {
+    return pixel.rg - pixel.gb;
+}
 bool isNear(float x, float y) {
     return texelFetch(masks, ivec2(vec2(x, y) / bit), 0).r > 0.5;
 }
 void main() {
     if (kind > 0.5 && isNear(at.x, at.y) != (kind < 1.5))
         discard;
-    colour = vec4(texture(picture, (origin + at) / size).rgb, 1.0);
+    vec3 own = pixelAt(clamp(at, vec2(0.5), extent - 0.5));
+    vec2 corner = floor(at - 0.5), share = at - 0.5 - corner;
+    vec4 sum = vec4(0.0);
+    for (int i = 0; i < 4; i++) {
+        vec2 offset = vec2(i & 1, i >> 1), place = clamp(corner + offset + 0.5, vec2(0.5), extent - 0.5);
+        vec3 pixel = pixelAt(place);
+        vec2 hue = abs(hueOf(pixel) - hueOf(own)), part = mix(1.0 - share, share, offset);
+        bool isOther = kind > 0.5 && isNear(place.x, place.y) != (kind < 1.5);
+        sum += isOther || max(hue.x, hue.y) > SAME_HUE ? vec4(0.0) : part.x * part.y * vec4(pixel, 1.0);
+    }
+    colour = sum.a > 0.0 ? vec4(sum.rgb / sum.a, 1.0) : vec4(own, 1.0);
     if (kind > 1.5 && (isNear(at.x - bit, at.y) || isNear(at.x + bit, at.y) || isNear(at.x, at.y - bit) || isNear(at.x, at.y + bit)))
         colour.rgb = vec3(dot(colour.rgb, vec3(0.299, 0.587, 0.114)));
 }`;
@@ -127,8 +146,7 @@ export class GlPainter {
     newTexture() {
         const { gl } = this, texture = gl.createTexture();
         gl.bindTexture(gl.TEXTURE_2D, texture);
-        // NEAREST: colours of the texture are not mixed, because users would read a mixture of two colours as the value between
-        // them
+        // NEAREST: the shader decides which pixels are mixed
         for (const [name, value] of [[gl.TEXTURE_MIN_FILTER, gl.NEAREST], [gl.TEXTURE_MAG_FILTER, gl.NEAREST],
             [gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE], [gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE]])
             gl.texParameteri(gl.TEXTURE_2D, name, value);
@@ -203,6 +221,7 @@ export class GlPainter {
         gl.viewport(left, gl.canvas.height - top - height, width, height);
         gl.uniformMatrix4fv(mesh.at('warp'), false, matrix);
         gl.uniform2f(mesh.at('origin'), grid.x, grid.y);
+        gl.uniform2f(mesh.at('extent'), grid.width, grid.height);
         gl.uniform1f(mesh.at('bit'), grid.cellPx / grid.maskSide);
         gl.bindTexture(gl.TEXTURE_2D, masks);
         gl.bindBuffer(gl.ARRAY_BUFFER, buffers[0]);
