@@ -39,11 +39,6 @@ static const int64_t CAMERA_INTERVAL_NS = 120 * NS_PER_MS;
    (pacing/quality_ladder.h) reduces the picture */
 enum { SMALL_PX = 128 };
 
-bool session_times(const struct frame_request *request)
-{
-    return request->view.tier == TIER_PREVIEW && request->urgency == URGENCY_INPUT && !request->of_data;
-}
-
 /* Handles the answer that the requested frame could not be drawn. A session that already shows a frame keeps it. A new session
    is closed, because it would show nothing. */
 static void on_failure(struct session *session, const struct frame_request *request)

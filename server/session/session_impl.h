@@ -14,7 +14,10 @@ void session_reply_error(struct session *session, const struct message_error *er
 /* Frees the frames of this session that are encoded but not sent yet. */
 void session_drop_ready(struct session *session);
 /* Returns whether a request is for a preview of a moving camera, whose time the pacer measures. */
-bool session_times(const struct frame_request *request);
+static inline bool session_times(const struct frame_request *request)
+{
+    return request->view.tier == TIER_PREVIEW && request->urgency == URGENCY_INPUT && !request->of_data;
+}
 /* Notes that an input changed the view: a preview is due now, and a refined (detailed) frame once the camera rests. */
 void session_on_input(struct session *session, int64_t now_ns);
 /* Returns the user's name for journals and lists; "local" without a token. */
