@@ -287,6 +287,15 @@ static int on_writeable(struct server_context *server, struct http_exchange *req
     return 0;
 }
 
+/* Takes the next `count` bytes of the request's body; bytes NULL: the body has ended. */
+static int take_body(struct server_context *server, struct http_exchange *request, const void *bytes, size_t count)
+{
+    request->body_left -= bytes ? (int64_t)count : request->body_left;
+    if (!request->discards_until_ns)
+        return bytes ? import_take_body(server, request, bytes, count) : import_end_body(server, request);
+    return bytes && clock_mono_ns() < request->discards_until_ns ? 0 : -1;
+}
+
 static struct http_exchange *request_of(struct lws *wsi, struct http_exchange **slot)
 {
     if (!*slot) {
@@ -334,8 +343,8 @@ int http_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user,
         return result;
     switch (reason) {
     case LWS_CALLBACK_HTTP: return serve(server_context_of(wsi), request_of(wsi, slot), in);
-    case LWS_CALLBACK_HTTP_BODY: return *slot ? request_take_body(server_context_of(wsi), *slot, in, len) : 0;
-    case LWS_CALLBACK_HTTP_BODY_COMPLETION: return *slot ? request_take_body(server_context_of(wsi), *slot, NULL, 0) : 0;
+    case LWS_CALLBACK_HTTP_BODY: return *slot ? take_body(server_context_of(wsi), *slot, in, len) : 0;
+    case LWS_CALLBACK_HTTP_BODY_COMPLETION: return *slot ? take_body(server_context_of(wsi), *slot, NULL, 0) : 0;
     case LWS_CALLBACK_HTTP_WRITEABLE: return *slot ? on_writeable(server_context_of(wsi), *slot) : 0;
     /* libwebsockets also sends this event when a connection is upgraded to a WebSocket; request_end() handles all other
        connections */

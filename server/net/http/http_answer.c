@@ -150,14 +150,6 @@ int request_done(struct http_exchange *request)
     return closes(request) || lws_http_transaction_completed(request->wsi) ? -1 : 0;
 }
 
-int request_take_body(struct server_context *server, struct http_exchange *request, const void *bytes, size_t count)
-{
-    request->body_left -= bytes ? (int64_t)count : request->body_left;
-    if (!request->discards_until_ns)
-        return bytes ? import_take_body(server, request, bytes, count) : import_end_body(server, request);
-    return bytes && clock_mono_ns() < request->discards_until_ns ? 0 : -1;
-}
-
 /* Writes the answer; takes ownership of body. Bytes that the socket does not accept now are written once it does. */
 int request_answer(struct http_exchange *request, int status, const char *type, char *body, size_t count, const char *extra_name,
                    const char *extra)

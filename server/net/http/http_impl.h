@@ -66,9 +66,6 @@ struct args { /* decoded arguments of a query */
 
 /* Functions that return int return the result for the libwebsockets callback: 0, or -1 to close the connection. */
 
-/* Takes the next `count` bytes of the request's body from libwebsockets; bytes NULL: the body has ended. */
-int request_take_body(struct server_context *server, struct http_exchange *request, const void *bytes, size_t count);
-
 /* Sends an answer with one extra header (NULL: none). Takes ownership of body (mem_free), which is written as the socket accepts it. */
 int request_answer(struct http_exchange *request, int status, const char *type, char *body, size_t count, const char *extra_name,
                    const char *extra);
