@@ -94,7 +94,7 @@ struct journal_file *journal_file_open(struct log *log, const char *folder, bool
 {
     struct journal_file *file = create(log, folder);
     if (mkdir(folder, 0777) != 0 && errno != EEXIST)
-        log_err(log, "%s: cannot be created: %s", folder, strerror(errno));
+        log_lasting_err(log, "%s: cannot be created: %s", folder, strerror(errno));
     *error = database_open(&file->db, renewed);
     if (*error)
         journal_file_close(&file);

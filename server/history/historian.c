@@ -277,7 +277,7 @@ static void take_events(struct historian *historian, const struct now *now, int6
 static void make_folder(struct historian *historian)
 {
     if (mkdir(historian->folder, 0777) != 0 && errno != EEXIST)
-        log_err(historian->log, "%s: cannot be created: %s", historian->folder, strerror(errno));
+        log_lasting_err(historian->log, "%s: cannot be created: %s", historian->folder, strerror(errno));
 }
 
 static struct month_file *open_month(struct historian *historian, int month, int *error)
@@ -504,7 +504,7 @@ static void try_to_write(struct historian *historian, int64_t mono_ns, int64_t u
         int64_t wait_ns = historian->retry_after_ns * 2;
         historian->retry_after_ns = wait_ns < NS_PER_S ? NS_PER_S : wait_ns > RETRY_MAX_S * NS_PER_S ? RETRY_MAX_S * NS_PER_S : wait_ns;
         historian->retry_ns = mono_ns + historian->retry_after_ns;
-        if (!historian->failing)
+        if (!historian->failing || error != atomic_load(&historian->error))
             log_event(historian->log, LOG_ERROR, EVENT_HISTORY_UNWRITABLE,
                       "history: the history cannot be written to disk (%s); new samples are kept in memory", database_error_text(error));
     } else if (historian->failing) {

@@ -65,6 +65,42 @@ static char *written(enum log_format format, const char *socket_path, enum log_l
     return text;
 }
 
+/* Returns how many times `part` occurs in the text. */
+static int occurrences(const char *text, const char *part)
+{
+    int count = 0;
+    for (const char *at = text; (at = strstr(at, part)); at++)
+        count++;
+    return count;
+}
+
+TEST(an_error_that_lasts_is_logged_once_until_it_changes)
+{
+    char text[4096] = "";
+    fflush(stderr);
+    int kept = dup(STDERR_FILENO), ends[2];
+    assert_int_equal(pipe(ends), 0);
+    dup2(ends[1], STDERR_FILENO);
+    close(ends[1]);
+    struct log *log = log_create(LOG_INFO);
+    for (int i = 0; i < 10; i++) {
+        log_lasting_err(log, "%s: %s", "a.sqlite", "disk is full");
+        log_info(log, "another line %d", i);
+        log_lasting_err(log, "%s: %s", "b.sqlite", "disk is full");
+    }
+    for (int i = 0; i < 40; i++)
+        log_lasting_err(log, "file %d", i);
+    log_destroy(&log);
+    dup2(kept, STDERR_FILENO);
+    close(kept);
+    assert_true(read(ends[0], text, sizeof(text) - 1) > 0);
+    close(ends[0]);
+    assert_int_equal(occurrences(text, "error a.sqlite: disk is full\n"), 1);
+    assert_int_equal(occurrences(text, "error b.sqlite: disk is full\n"), 1);
+    assert_int_equal(occurrences(text, "another line"), 10);
+    assert_int_equal(occurrences(text, "error file "), 40);
+}
+
 TEST_ON(const struct socket_place *place, an_entry_of_the_journal_has_its_priority_plant_and_message_id, set_up, tear_down)
 {
     char got[2048], want[2048];

@@ -73,8 +73,8 @@ int database_fail(struct database *database, int code, const char *doing)
         return 0;
     bool told = database->handle && sqlite3_errcode(database->handle) != SQLITE_OK;
     int error = errno_of(code), cause = (error == EACCES || error == EIO) && told ? cause_of(database) : 0;
-    log_err(database->log, "%s: %s: %s%s%s", database->path, doing, told ? sqlite3_errmsg(database->handle) : sqlite3_errstr(code),
-            cause ? ": " : "", cause ? strerror(cause) : "");
+    log_lasting_err(database->log, "%s: %s: %s%s%s", database->path, doing, told ? sqlite3_errmsg(database->handle) : sqlite3_errstr(code),
+                    cause ? ": " : "", cause ? strerror(cause) : "");
     return -(cause ? cause : error);
 }
 
@@ -151,7 +151,7 @@ static bool is_newer(struct database *database, int version)
 {
     int known = database->format->version;
     if (version > known)
-        log_err(
+        log_lasting_err(
             database->log,
             "%s: version %d of this file was written by a newer Plantcast; this program supports version %d, and neither reads nor "
             "changes the file. Install the newer Plantcast again; or stop the daemon, run `mv %s* ANOTHER_FOLDER`, and start the daemon",

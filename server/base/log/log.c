@@ -9,13 +9,14 @@
 #include <time.h>
 
 #include "base/clock.h"
+#include "base/log/log_pace.h"
 #include "base/mem.h"
 #include "base/system/service_manager.h"
 #include "base/text/json_text.h"
 #include "base/text/utf8.h"
 
-enum { LINE_BYTES = 2048 };
-static const int64_t REPEAT_NS = 1000000000;
+enum { LINE_BYTES = 2048, LASTING = 16 };
+static const int64_t REPEAT_NS = 1000000000, LASTING_FIRST_NS = 60 * NS_PER_S, LASTING_LONGEST_NS = 3600 * NS_PER_S;
 
 struct log {
     enum log_level level;
@@ -29,6 +30,10 @@ struct log {
     enum log_event last_event;
     int64_t last_ns;
     unsigned repeats;
+    struct lasting {
+        char *text; /* NULL: unused */
+        struct log_pace pace;
+    } lasting[LASTING]; /* newest texts of log_lasting_err() */
 };
 
 struct log *log_create(enum log_level level)
@@ -145,6 +150,8 @@ void log_destroy(struct log **log)
         return;
     flush_repeats(*log);
     pthread_mutex_destroy(&(*log)->lock);
+    for (int i = 0; i < LASTING; i++)
+        mem_free((*log)->lasting[i].text);
     mem_free((*log)->plant);
     mem_free((*log)->journal_socket);
     mem_free(*log);
@@ -173,4 +180,34 @@ void log_event(struct log *log, enum log_level level, enum log_event event, cons
         log->last_ns = now_ns;
     }
     pthread_mutex_unlock(&log->lock);
+}
+
+/* Returns the entry of a text. If there is none, replaces the entry that was logged least recently. Call with the lock. */
+static struct lasting *find_lasting(struct log *log, const char *text)
+{
+    struct lasting *oldest = &log->lasting[0];
+    for (int i = 0; i < LASTING; i++) {
+        struct lasting *entry = &log->lasting[i];
+        if (entry->text && !strcmp(entry->text, text))
+            return entry;
+        if (entry->pace.next_ns < oldest->pace.next_ns)
+            oldest = entry;
+    }
+    mem_free(oldest->text);
+    *oldest = (struct lasting){ .text = mem_strdup(text), .pace = { .first_ns = LASTING_FIRST_NS, .longest_ns = LASTING_LONGEST_NS } };
+    return oldest;
+}
+
+void log_lasting_err(struct log *log, const char *fmt, ...)
+{
+    char text[LINE_BYTES], more[LOG_PACE_BYTES];
+    va_list ap;
+    va_start(ap, fmt);
+    vsnprintf(text, sizeof(text), fmt, ap);
+    va_end(ap);
+    pthread_mutex_lock(&log->lock);
+    bool due = log_pace_take(&find_lasting(log, text)->pace, clock_mono_ns(), more);
+    pthread_mutex_unlock(&log->lock);
+    if (due)
+        log_err(log, "%s%s", text, more);
 }

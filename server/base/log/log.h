@@ -51,6 +51,10 @@ bool log_is_text(const struct log *log);
 
 void log_event(struct log *log, enum log_level level, enum log_event event, const char *fmt, ...) __attribute__((format(printf, 4, 5)));
 
+/* Logs an error that an action reports again at each retry, such as a file that cannot be opened. The same text is logged again
+   after a minute at the earliest, later after pauses that double up to an hour, and then with the number of repetitions. */
+void log_lasting_err(struct log *log, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
+
 #define log_at(log, level, ...) log_event(log, level, EVENT_NONE, __VA_ARGS__)
 #define log_err(log, ...) log_at(log, LOG_ERROR, __VA_ARGS__)
 #define log_warn(log, ...) log_at(log, LOG_WARN, __VA_ARGS__)
