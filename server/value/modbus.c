@@ -42,7 +42,7 @@ static void read_block(struct modbus_source *modbus, size_t index)
         modbus->manners.timed_out = status == -ETIMEDOUT ? unit : NULL;
         modbus_manners_late(modbus);
         if (!modbus_unit_doubt(modbus, unit, index))
-            modbus_unit_is_down(modbus, unit, strerror(-status));
+            modbus_unit_is_down(modbus, unit, modbus_error_text(status));
         return;
     }
     modbus->answered_ns = now_ns;

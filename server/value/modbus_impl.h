@@ -77,6 +77,9 @@ enum { GATEWAY_UNITS = 3 };
 struct modbus_unit *modbus_unit_of(const struct modbus_source *modbus, const struct read_plan_block *block);
 /* Records that a unit answered. Logs this if the last log line said that the unit does not answer. */
 void modbus_unit_is_up(struct modbus_source *modbus, struct modbus_unit *unit);
+/* Returns the text for an error of modbus_link_open() or modbus_link_read(), for the log (static, or valid until strerror() is called
+   again). status: -errno. */
+const char *modbus_error_text(int status);
 /* Records that a unit does not answer. The readings of its tags are lost (store_tags_lost()), and the unit gets no request
    before a backoff delay has passed. If GATEWAY_UNITS units have now failed without an answer in between, the readings of all
    units of the source are lost immediately. */

@@ -22,6 +22,12 @@ struct modbus_unit *modbus_unit_of(const struct modbus_source *modbus, const str
     return &modbus->units[i];
 }
 
+const char *modbus_error_text(int status)
+{
+    return status == -EPROTO ? "the answer is not Modbus, or belongs to another request: check host, port, unit and transport"
+                             : strerror(-status);
+}
+
 static void link_lost(struct modbus_source *modbus, const char *why)
 {
     int64_t now_ns = clock_mono_ns();
@@ -229,7 +235,7 @@ bool modbus_connect_link(struct modbus_source *modbus)
         return false;
     for (size_t i = 0; i < modbus->plan.unit_count; i++)
         modbus->units[i].state = UNIT_DOWN;
-    link_lost(modbus, strerror(-status));
+    link_lost(modbus, modbus_error_text(status));
     try_elsewhere(modbus);
     return false;
 }

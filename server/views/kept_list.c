@@ -47,6 +47,7 @@ static bool good_list(const struct kept_list_kind *kind, const json_t *list)
 static void read_file(struct kept_list *kept)
 {
     json_error_t error = { 0 };
+    errno = 0;
     json_t *file = json_load_file(kept->path, JSON_REJECT_DUPLICATES, &error);
     json_t *list = json_object_get(file, kept->kind->key), *version = json_object_get(file, "version");
     bool newer = json_integer_value(version) > VERSION;
@@ -56,6 +57,8 @@ static void read_file(struct kept_list *kept)
                 "%s: version %lld of this file was written by a newer Plantcast; this program supports version %d, and neither uses nor "
                 "changes the file. Install the newer Plantcast again; or stop the daemon, run `mv %s ANOTHER_FOLDER`, and start the daemon",
                 kept->path, (long long)json_integer_value(version), VERSION, kept->path);
+    else if (!file && error.line < 0)
+        log_err(kept->log, "%s: cannot be read: %s; the file is ignored and not changed", kept->path, strerror(errno));
     else if (kept->unreadable)
         log_err(kept->log, "%s:%d: %s%s%s%s; the file is ignored and not changed", kept->path, file ? 1 : error.line,
                 file ? "not a list of " : error.text, file ? kept->kind->key : "", file ? " with " : "", file ? kept->kind->members : "");

@@ -49,6 +49,23 @@ test('a second daemon does not record in the same history folder, and starts onc
     }
 });
 
+test('the log says that a device answers something else than Modbus', { skip }, async () => {
+    const own = await TinyPlant.create(), web = createServer((socket) => {
+        socket.on('data', () => socket.write('HTTP/1.1 400 Bad Request\r\n\r\n')).on('error', () => {});
+    }).listen(0, '127.0.0.1');
+    await new Promise((done) => web.once('listening', done));
+    try {
+        assert.equal(own.prepare().code, 0);
+        const text = readFileSync(own.file, 'utf8'), { port } = web.address();
+        writeFileSync(own.file, text.replace(`port: ${own.modbusPort}`, `port: ${port}`));
+        await own.startDaemon();
+        await own.daemon.line(new RegExp(`source plc1: 127\\.0\\.0\\.1:${port}: no readings \\(the answer is not Modbus, or belongs to`));
+    } finally {
+        await own.destroy();
+        web.close();
+    }
+});
+
 test('each wrong command line gives its exit code and reason', { skip }, async () => {
     const busy = createServer().listen(0, '127.0.0.1');
     await new Promise((done) => busy.once('listening', done));
