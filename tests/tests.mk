@@ -133,6 +133,7 @@ fuzz:
 fuzzed: $(fuzzers)
 	@for f in $(fuzzers); do seeds=$$(basename $$f _fuzz); mkdir -p $(out)/corpus/$$seeds; \
 	    dict=tests/fuzz/$$seeds.dict; \
+	    LSAN_OPTIONS=suppressions=tests/leaks.txt:print_suppressions=0 \
 	    $$f -max_total_time=$(seconds) -timeout=10 $$([ -f $$dict ] && echo -dict=$$dict) -artifact_prefix=$(out)/ \
 	    $(out)/corpus/$$seeds tests/fuzz/$$seeds || exit 1; done
 $(out)/tests/fuzz/rvm_fuzz: pkg_libs += -lGLU
