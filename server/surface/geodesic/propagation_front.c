@@ -22,12 +22,19 @@
 /* maximum number of triangles that a straight line from the source crosses; points beyond get their distance by propagation
    instead */
 #define MAX_DEPTH 32
+/* An intrinsic triangle contains the source if no barycentric weight is below -OUTSIDE, and the square of the source's distance from
+   its plane is less than OFF_PLANE, as a fraction of that of its longest side. */
+#define OUTSIDE 1e-3
+#define OFF_PLANE 1e-6
 #define NO_LENGTH 1e-300 /* avoids division by 0 */
 /* A point whose neighbours already have offers is processed again if its distance falls by at least this fraction. Each smaller
    correction would spread over the whole surface. */
-#define CORRECTION 3e-4f
+#define CORRECTION 1e-4f
 /* maximum number of entries in the queue per point of the mesh, which bounds the time that corrections take */
 #define MAX_ENTRIES 16
+
+/* states of a point: not yet processed; processed; to be processed again with a shorter distance */
+enum { WAITING, SETTLED, CORRECTED };
 
 typedef float lanes __attribute__((vector_size(4 * PROPAGATION_FAN)));
 /* mask with one lane per neighbour, whose bits are all set or all clear */
@@ -38,7 +45,7 @@ void propagation_front_finish(struct propagation_front *front)
     mem_free(front->distance_m);
     mem_free(front->bend_m);
     mem_free(front->straight_m);
-    mem_free(front->settled);
+    mem_free(front->state);
     mem_free(front->buckets);
     mem_free(front->items);
     *front = (struct propagation_front){ 0 };
@@ -51,16 +58,16 @@ static bool clear(const struct propagation *propagation, struct propagation_fron
         front->distance_m = mem_try_array(count, sizeof(*front->distance_m));
         front->bend_m = mem_try_array(count, sizeof(*front->bend_m));
         front->straight_m = mem_try_array(count, sizeof(*front->straight_m));
-        front->settled = mem_try_array(count, 1);
+        front->state = mem_try_array(count, 1);
         front->buckets = mem_try_array(propagation->bucket_count, sizeof(*front->buckets));
-        if (!front->distance_m || !front->bend_m || !front->straight_m || !front->settled || !front->buckets)
+        if (!front->distance_m || !front->bend_m || !front->straight_m || !front->state || !front->buckets)
             return false;
         /* marks the buckets of the priority queue as empty when they are allocated; each propagation leaves them empty for the next one */
         memset(front->buckets, 0xff, propagation->bucket_count * sizeof(*front->buckets));
     }
     for (size_t i = 0; i < count; i++)
         front->distance_m[i] = INFINITY;
-    memset(front->settled, 0, count);
+    memset(front->state, 0, count);
     front->item_count = front->at = 0;
     return true;
 }
@@ -88,9 +95,10 @@ static inline void offer(const struct propagation *propagation, struct propagati
     const bool is_correction = distance_m < front->distance_m[point] * (1 - CORRECTION);
     front->distance_m[point] = distance_m;
     front->bend_m[point] = bend_m;
-    if (front->settled[point] && (!is_correction || front->item_count >= MAX_ENTRIES * propagation->mesh->point_count))
+    if (front->state[point] == SETTLED && (!is_correction || front->item_count >= MAX_ENTRIES * propagation->mesh->point_count))
         return;
-    front->settled[point] = 0;
+    if (front->state[point] == SETTLED)
+        front->state[point] = CORRECTED;
     if (front->item_count == front->item_capacity)
         mem_grow(&front->items, &front->item_capacity, front->item_count + 1, sizeof(*front->items));
     /* Converts the distance to a bucket number via int64_t, for which the processor has a single instruction. Correct, because
@@ -166,6 +174,7 @@ struct front_turn {
     /* d, bend: distance of the current point and of the last bend of its path, in all lanes; radius: of the arc around which paths
        bend there; reached: distance up to which distances are final */
     lanes d, bend, radius, reached;
+    bool is_corrected;                /* the current point is processed again, after points that are farther from the source */
     uint32_t empty;                   /* number of consecutive empty buckets */
     float offered_m[PROPAGATION_FAN]; /* offers to the fan's points */
     float bends_m[PROPAGATION_FAN];   /* distances from the source to the last bends of the offered paths */
@@ -186,10 +195,38 @@ SIMD_BODY void bend_at(const struct front_turn *turn, const lanes *length_m, con
     choose(&is_beyond, &turn->d, bend, bend);
 }
 
+/* Distances that point p offers to each neighbour (lane) and the next one, through the triangle that the three form: the path passes
+   through the edge from p to the other of the two. INFINITY: none. bend: distance from the source to the path's last bend. */
+struct triangle_lanes {
+    lanes to_this, bend_to_this, to_next, bend_to_next;
+};
+
+/* A point p and its neighbours, whose distances from the source and from p are given; next: the same for the next neighbour. */
+struct neighbour_lanes {
+    const lanes *d, *next_d, *bend, *next_bend, *length, *next_length, *cosine, *sine;
+};
+
+/* Writes the offer to one of the two neighbours of each triangle: this one where to_this is set, else the next one. */
+SIMD_BODY void through_triangles(const struct front_turn *turn, const struct neighbour_lanes *at, const mask *to_this,
+                                 struct triangle_lanes *out)
+{
+    struct edge_lanes edge = { .d_of_p = &turn->d, .bend_of_p = &turn->bend };
+    lanes through, bend;
+    choose(to_this, at->next_d, at->d, &edge.d_of_b);
+    choose(to_this, at->next_bend, at->bend, &edge.bend_of_b);
+    choose(to_this, at->next_length, at->length, &edge.p_to_b);
+    choose(to_this, at->length, at->next_length, &edge.p_to_c);
+    through_edge(&edge, &turn->reached, at->cosine, at->sine, &bend, &through);
+    choose(to_this, &through, &out->to_this, &out->to_this);
+    choose(to_this, &bend, &out->bend_to_this, &out->bend_to_this);
+    choose(to_this, &out->to_next, &through, &out->to_next);
+    choose(to_this, &out->bend_to_next, &bend, &out->bend_to_next);
+}
+
 /* Computes the distance that point p, at distance d, offers to each neighbour in a fan: the shorter of two. One is d plus the
  * edge's length. The other passes through the triangle shared with the previous or next neighbour. It exists only if that
- * neighbour is nearer to the source than this one. bend: distances from the source to the last bends of the paths to the
- * neighbours, and then those of the offered paths. */
+ * neighbour is nearer to the source than this one, or p is processed again. bend: distances from the source to the last bends of
+ * the paths to the neighbours, and then those of the offered paths. */
 SIMD_BODY void offers_of(const struct front_turn *turn, const lanes *d_of_each, const lanes *length_m, const lanes *cosine,
                          const lanes *sine, lanes *bend, lanes *out)
 {
@@ -197,22 +234,18 @@ SIMD_BODY void offers_of(const struct front_turn *turn, const lanes *d_of_each, 
     lanes next = __builtin_shufflevector(here, here, 1, 2, 3, 4, 5, 6, 7, 7);
     lanes next_length = __builtin_shufflevector(length, length, 1, 2, 3, 4, 5, 6, 7, 7);
     lanes next_bend = __builtin_shufflevector(bend_here, bend_here, 1, 2, 3, 4, 5, 6, 7, 7);
-    mask to_here = here > next;
-    struct edge_lanes edge = { .d_of_p = &turn->d, .bend_of_p = &turn->bend };
-    lanes through, bend_through, to_this, to_next, bend_to_next;
-    choose(&to_here, &next, &here, &edge.d_of_b);
-    choose(&to_here, &next_bend, &bend_here, &edge.bend_of_b);
-    choose(&to_here, &next_length, &length, &edge.p_to_b);
-    choose(&to_here, &length, &next_length, &edge.p_to_c);
-    through_edge(&edge, &turn->reached, cosine, sine, &bend_through, &through);
-    choose(&to_here, &through, &infinite, &to_this);
-    choose(&to_here, &infinite, &through, &to_next);
-    to_next = __builtin_shufflevector(to_next, infinite, 8, 0, 1, 2, 3, 4, 5, 6);
-    bend_to_next = __builtin_shufflevector(bend_through, infinite, 8, 0, 1, 2, 3, 4, 5, 6);
-    mask less = to_next < to_this;
-    choose(&less, &to_next, &to_this, &through);
-    choose(&less, &bend_to_next, &bend_through, &bend_through);
-    lanes along = turn->d + length;
+    const struct neighbour_lanes at = { &here, &next, &bend_here, &next_bend, &length, &next_length, cosine, sine };
+    struct triangle_lanes offers = { infinite, bend_here, infinite, next_bend };
+    mask to_farther = here > next, to_nearer = here <= next;
+    through_triangles(turn, &at, &to_farther, &offers);
+    if (turn->is_corrected)
+        through_triangles(turn, &at, &to_nearer, &offers);
+    lanes to_next = __builtin_shufflevector(offers.to_next, infinite, 8, 0, 1, 2, 3, 4, 5, 6);
+    lanes bend_to_next = __builtin_shufflevector(offers.bend_to_next, infinite, 8, 0, 1, 2, 3, 4, 5, 6);
+    lanes through, bend_through, along = turn->d + length;
+    mask less = to_next < offers.to_this;
+    choose(&less, &to_next, &offers.to_this, &through);
+    choose(&less, &bend_to_next, &offers.bend_to_this, &bend_through);
     bend_at(turn, length_m, &along, bend);
     less = through < along;
     choose(&less, &through, &along, out);
@@ -232,13 +265,16 @@ SIMD_BODY bool next_point(const struct propagation *propagation, struct front_tu
             *bucket = item.next;
             /* skips outdated entries: a point has one entry in the queue for each time its distance was lowered, and only the
                entry with the shortest distance counts */
-            if (front->settled[item.point])
+            if (front->state[item.point] == SETTLED)
                 continue;
-            front->settled[item.point] = 1;
             turn->d = front->distance_m[item.point] - (lanes){ 0 };
             turn->bend = front->bend_m[item.point] - (lanes){ 0 };
             turn->radius = propagation->bend_radius_m[item.point] - (lanes){ 0 };
-            turn->reached = turn->d + ANY_ORDER / propagation->steps_per_m;
+            turn->is_corrected = front->state[item.point] == CORRECTED;
+            front->state[item.point] = SETTLED;
+            /* neighbours of a corrected point may be final even if they are farther from the source */
+            const float own_step = front->distance_m[item.point] * propagation->steps_per_m, step = (float)front->at;
+            turn->reached = ((own_step > step ? own_step : step) + ANY_ORDER) / propagation->steps_per_m - (lanes){ 0 };
             turn->fan = propagation->fans + propagation->first[item.point];
             turn->end = propagation->fans + propagation->first[item.point + 1];
             if (turn->fan < turn->end)
@@ -248,7 +284,7 @@ SIMD_BODY bool next_point(const struct propagation *propagation, struct front_tu
     return false;
 }
 
-/* Computes the distances that the current point offers to the neighbours in the current fan. Has no branches, so that the processor
+/* Computes the distances that the current point offers to the neighbours in the current fan. Has one branch only, so that the processor
  * overlaps the computations of several fronts (propagations from different sources). */
 SIMD_BODY void look_round(struct front_turn *turn)
 {
@@ -425,13 +461,9 @@ static bool lay_out_beyond(const struct propagation *propagation, uint32_t enter
     return true;
 }
 
-static bool lay_out_flipped(const struct propagation *propagation, const uint32_t given[3], const double weights[3], struct laid *laid)
+static bool lay_out_flipped(const struct propagation *propagation, const uint32_t given[3], const double source[3], struct laid *laid)
 {
     const struct intrinsic *in = propagation->in;
-    double source[3] = { 0 };
-    for (int i = 0; i < 3; i++)
-        for (int axis = 0; axis < 3; axis++)
-            source[axis] += weights[i] * propagation->mesh->points[given[i]][axis];
     for (uint32_t t = 0; t < in->tri_count; t++)
         for (uint32_t side = 0; side < 3; side++) {
             uint32_t p = in->points[t][side], q = in->points[t][(side + 1) % 3], third = TRIMESH_NONE;
@@ -444,6 +476,40 @@ static bool lay_out_flipped(const struct propagation *propagation, const uint32_
     return false;
 }
 
+/* Unfolds the intrinsic triangle that contains the source into the plane, if all edges of the mesh triangle around the source were
+   flipped. Looks for it in space, among the intrinsic triangles that are flat there. Returns false if there is none. */
+static bool lay_out_in_space(const struct propagation *propagation, const double source[3], struct laid *laid)
+{
+    const struct intrinsic *in = propagation->in;
+    const double(*points)[3] = (const double(*)[3])propagation->mesh->points;
+    double least2 = INFINITY;
+    for (uint32_t t = 0; t < in->tri_count; t++) {
+        const uint32_t *v = in->points[t];
+        const double *sides = in->lengths[t];
+        double x, y, from[3], longest_m = max_of(sides[0], max_of(sides[1], sides[2]));
+        if (vec_distance(source, points[v[0]]) > longest_m)
+            continue;
+        for (int i = 0; i < 3; i++)
+            from[i] = vec_distance(source, points[v[i]]);
+        /* the triangle's corners are (0, 0), (sides[0], 0) and (x, y) */
+        intrinsic_layout(sides, &x, &y);
+        double at_x = (from[0] * from[0] - from[1] * from[1] + sides[0] * sides[0]) / (2 * sides[0]);
+        double at_y = ((from[0] * from[0] - from[2] * from[2] + sides[2] * sides[2]) / 2 - at_x * x) / y;
+        double off2 = fabs(from[0] * from[0] - at_x * at_x - at_y * at_y) / (longest_m * longest_m);
+        double parts[3] = { 0, (at_x - x * at_y / y) / sides[0], at_y / y }, sum = 0;
+        parts[0] = 1 - parts[1] - parts[2];
+        if (!(min_of(parts[0], min_of(parts[1], parts[2])) > -OUTSIDE && off2 < min_of(least2, OFF_PLANE)))
+            continue;
+        least2 = off2;
+        for (int i = 0; i < 3; i++)
+            sum += parts[i] = max_of(parts[i], MIN_WEIGHT);
+        at_x = (parts[1] * sides[0] + parts[2] * x) / sum;
+        at_y = parts[2] * y / sum;
+        *laid = (struct laid){ t, { { -at_x, -at_y }, { sides[0] - at_x, -at_y }, { x - at_x, y - at_y } } };
+    }
+    return least2 < INFINITY;
+}
+
 /* Sets the exact distances of points near the source that a straight line on the unfolded surface reaches. Propagation alone
    would be wrong there. A ray may pass between two points that are farther from the source than the ray's end, and are
    therefore processed after it. */
@@ -451,13 +517,17 @@ static void look_around(const struct propagation *propagation, struct propagatio
 {
     const struct intrinsic *in = propagation->in;
     const uint32_t *given = propagation->mesh->tris[tri];
-    double inside[3], sum = 0;
+    double inside[3], source[3] = { 0 }, sum = 0;
     struct laid laid;
     for (int i = 0; i < 3; i++)
         sum += max_of(weights[i], MIN_WEIGHT);
     for (int i = 0; i < 3; i++)
         inside[i] = max_of(weights[i], MIN_WEIGHT) / sum;
-    if (!lay_out_kept(in, given, tri, inside, &laid) && !lay_out_flipped(propagation, given, inside, &laid))
+    for (int i = 0; i < 3; i++)
+        for (int axis = 0; axis < 3; axis++)
+            source[axis] += inside[i] * propagation->mesh->points[given[i]][axis];
+    if (!lay_out_kept(in, given, tri, inside, &laid) && !lay_out_flipped(propagation, given, source, &laid) &&
+        !lay_out_in_space(propagation, source, &laid))
         return;
     for (int i = 0; i < 3; i++) {
         struct window window = { .entered = in->glue[laid.tri][i] };
