@@ -20,7 +20,8 @@ struct frame_request {
     /* monotonic time of the newest change of readings that the client knows; frames with older readings do not answer the request */
     int64_t read_ns;
     int step;         /* step of the quality ladder (picture quality by bandwidth) with which previews are drawn and encoded */
-    double scale;     /* factor by which width and height of a preview are smaller than those of the client's view */
+    /* factor by which width and height of a preview are smaller than those of the client's view; 1 if or_moving is set */
+    double scale;
     bool draft;       /* true: a draft: a refined frame encoded in low quality and sent before the final one */
     bool of_data;     /* true: the request was made because a reading changed, at the time view.input_ns */
     /* true: a refined frame is drawn only if it takes no longer than a preview; otherwise a preview with moving_quality is drawn */

@@ -199,6 +199,7 @@ static void make_refreshed(const struct session *session, int64_t now_ns, struct
     request->quality = STILL;
     request->or_moving = !all_can_be_refined(session, now_ns) || session->delivery.pacer.asked > 0;
     request->step = quality_ladder_step(ladder, session->delivery.common_step);
+    request->scale = 1; /* choose_other() in render_thread.c draws the preview in the view's full size, whatever the step */
     request->moving_quality.quality = quality_ladder_rung(ladder, request->step).quality;
 }
 

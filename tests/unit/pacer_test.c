@@ -339,7 +339,8 @@ TEST(steps_do_not_swing)
 }
 
 /* Smaller pictures have fewer bytes. When the picture gets its size back, the ladder must expect the bytes of the larger one. The
-   picture of step 3 in half size is the same as that of step 5. */
+   picture of step 3 in half size is the same as that of step 5. A preview drawn in place of a refined frame has full size at any
+   step: that of step 5 in full size is the same as that of step 3. */
 TEST(the_expected_bytes_follow_the_size_of_pictures)
 {
     enum { HALF = 2 };
@@ -357,6 +358,10 @@ TEST(the_expected_bytes_follow_the_size_of_pictures)
         ladder.step = 5;
         assert_true(fabs(quality_ladder_bytes(&ladder) / HALF_BYTES - 1) < 0.05);
     }
+    struct quality_ladder ladder = { .step = 5 };
+    struct channel channel = { 0 };
+    quality_ladder_on_ack(&ladder, &channel, 5, 1, (size_t)FULL_BYTES, NS_PER_S);
+    assert_true(fabs(quality_ladder_bytes(&ladder) / HALF_BYTES - 1) < 0.05);
 }
 
 TEST(who_see_the_same_take_one_step)

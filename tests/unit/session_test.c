@@ -676,6 +676,7 @@ CASE(data_that_changes_nothing_does_not_end_a_refinement_that_it_overtook)
     assert_true(ask(f, &refined) && refined.view.tier == TIER_REFINED);
     session_on_data(f->session, f->now_ns += 1500 * MS);
     assert_true(ask(f, &data) && data.or_moving);
+    assert_true(data.scale == 1); /* the preview that may be drawn instead has the view's full size */
     paint(f, &refined, true); /* abandoned: no frame */
     data.view.tier = TIER_PREVIEW;
     paint(f, &data, true); /* the preview that is shown */

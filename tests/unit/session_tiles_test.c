@@ -203,6 +203,40 @@ TEST(test_a_tile_seen_again_takes_its_own_pixels)
     mem_free(session);
 }
 
+/* While the server is overloaded, a preview may be drawn in place of the wall's refined picture. It has full size, and the
+   quality that the tile with the slowest network needs, so the request must name the step of that tile. */
+TEST(test_a_preview_in_place_of_a_refined_picture_has_the_worst_step)
+{
+    const struct wall plan = { .inches = 10, .tile = { .columns = 2, .rows = 1 } };
+    const struct session_context context = { .load.overloaded = true };
+    static const int STEPS[TILES] = { 1, 5 };
+    struct picture_size made = { 0 };
+    struct frame_request requests[TILES];
+    struct wall_case wall;
+    set_up(&wall);
+    wall.tiles.made = &made;
+    for (int i = 0; i < TILES; i++) {
+        struct session *member = wall.members[i];
+        member->context = &context;
+        member->hello = true;
+        member->tile.place.display = i + 1;
+        tile_layout_init(&member->tile.layout, &plan, 1920, 1080, VIEW_MAX_PIXELS);
+        member->delivery.pacer.ladder.step = STEPS[i];
+        member->delivery.common_step = -1;
+        member->demand.refined = REFINED_FULL;
+        member->demand.data = true;
+    }
+    assert_true(session_tiles_next_request(&wall.tiles, 1, NS_PER_S, requests));
+    for (int i = 0; i < TILES; i++) {
+        assert_true(requests[i].view.tier == TIER_REFINED && requests[i].or_moving);
+        assert_int_equal(requests[i].view.width_px, tile_layout_width(&wall.members[0]->tile.layout));
+        assert_int_equal(requests[i].moving_quality.quality, quality_ladder_rung(&wall.members[1]->delivery.pacer.ladder, 5).quality);
+        assert_int_equal(requests[i].step, 5);
+        assert_true(requests[i].scale == 1);
+    }
+    tear_down(&wall);
+}
+
 TEST(test_a_move_is_sent_once)
 {
     struct wall_case wall;

@@ -49,10 +49,11 @@ static const struct {
 /* exponent by which the bytes of a frame depend on its scale, from the table above */
 static const double BYTES_BY_SCALE = 1.45;
 
-/* Returns the size in bytes of a frame of this step and scale, relative to a frame of step 0 and of full size. */
+/* Returns the size in bytes of a frame of this step and scale, relative to a frame of step 0 and of full size. scale: as in struct
+   pacer_note; it may be larger than the scale of the step. */
 static double relative_bytes(int step, double scale)
 {
-    return steps[step].bytes * (scale < steps[step].rung.scale ? pow(scale / steps[step].rung.scale, BYTES_BY_SCALE) : 1);
+    return steps[step].bytes * (scale > 0 ? pow(scale / steps[step].rung.scale, BYTES_BY_SCALE) : 1);
 }
 
 /* Returns the expected size in bytes of a preview at this step, in the present size of pictures. */
@@ -193,7 +194,7 @@ void quality_ladder_on_made(struct quality_ladder *ladder, int64_t took_ns, int6
 void quality_ladder_on_ack(struct quality_ladder *ladder, const struct channel *channel, int step, double scale, size_t bytes,
                            int64_t now_ns)
 {
-    double unit = (double)bytes / relative_bytes(step, scale > 0 ? scale : 1);
+    double unit = (double)bytes / relative_bytes(step, scale);
     /* replaces the guess, which was made from the number of pixels, by the first frame's real size */
     ladder->unit_bytes = ladder->known ? ladder->unit_bytes + SAMPLE_WEIGHT * (unit - ladder->unit_bytes) : unit;
     if (channel->ns_per_byte > 0) {

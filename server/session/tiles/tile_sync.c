@@ -86,9 +86,10 @@ bool session_tiles_next_request(const struct session_tiles *tiles, uint64_t numb
     if (moving) {
         layout = tile_layout_scale(&layout, rung.scale);
         first.quality = (struct encoder_params){ .quality = rung.quality };
-        first.step = step;
-        first.scale = rung.scale;
     }
+    /* A preview drawn in place of a refined picture has the layout's full size, but the quality of this step. */
+    first.step = step;
+    first.scale = moving ? rung.scale : 1;
     first.moving_quality.quality = rung.quality;
     first.view.width_px = tile_layout_width(&layout);
     first.view.height_px = tile_layout_height(&layout);
