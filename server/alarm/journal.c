@@ -85,12 +85,13 @@ static void set_error(struct journal *journal, int error)
     counter_set(journal->counters.good, !error);
 }
 
-/* Writes the journal rows taken from the queue. now: write even if the retry delay after a failure is not over. */
+/* Writes the journal rows taken from the queue. Without rows, a file that could not be used is tried again, because a quiet plant
+   may have no rows for days. now: write even if the retry delay after a failure is not over. */
 static void try_to_write(struct journal *journal, bool now)
 {
     int64_t mono_ns = clock_mono_ns();
     size_t rows = journal->taken.count;
-    if (!rows || (journal->failing && !now && mono_ns < journal->retry_ns))
+    if (journal->failing ? !now && mono_ns < journal->retry_ns : !rows)
         return;
     int error = write_taken(journal, mono_ns);
     if (error) {
@@ -101,7 +102,8 @@ static void try_to_write(struct journal *journal, bool now)
             log_err(journal->log, "alarms: the alarm journal cannot be written (%s); new alarm events are kept in memory",
                     database_error_text(error));
     } else if (journal->failing) {
-        log_info(journal->log, "alarms: writing the alarm journal works again; the alarm events kept in memory are recorded");
+        log_info(journal->log, "alarms: writing the alarm journal works again%s",
+                 rows > 0 ? "; the alarm events kept in memory are recorded" : "");
         journal->retry_after_ns = 0;
     }
     set_error(journal, error);
@@ -126,16 +128,20 @@ static void take(struct journal *journal)
 }
 
 /* Waits for GATHER_NS, so that one transaction writes all rows of that period, and then, if no row is waiting, until the first
-   one is queued. journal->urgent or the order to stop ends both waits at once. Takes the queued rows. *urgent: true if a caller
-   waits for these rows to be stored. Returns false if the thread must end. */
+   one is queued, or a file that failed is due to be tried again. journal->urgent or the order to stop ends both waits at once.
+   Takes the queued rows. *urgent: true if a caller waits for these rows to be stored. Returns false if the thread must end. */
 static bool wait_for_work(struct journal *journal, bool *urgent)
 {
     int64_t until_ns = clock_mono_ns() + GATHER_NS;
+    bool due = false;
     pthread_mutex_lock(&journal->thread.lock);
     while (!journal->thread.stopping && !journal->urgent && clock_cond_wait(&journal->thread.wake, &journal->thread.lock, until_ns))
         continue;
-    while (!journal->thread.stopping && !journal->urgent && !journal->waiting.count && !journal->taken.count)
-        pthread_cond_wait(&journal->thread.wake, &journal->thread.lock);
+    while (!journal->thread.stopping && !journal->urgent && !journal->waiting.count && !journal->taken.count && !due)
+        if (journal->failing)
+            due = !clock_cond_wait(&journal->thread.wake, &journal->thread.lock, journal->retry_ns);
+        else
+            pthread_cond_wait(&journal->thread.wake, &journal->thread.lock);
     take(journal);
     *urgent = journal->urgent;
     journal->urgent = false;
@@ -151,7 +157,8 @@ static void *journal_main(void *arg)
     bool urgent;
     while (wait_for_work(journal, &urgent))
         try_to_write(journal, urgent);
-    try_to_write(journal, true);
+    if (journal->taken.count)
+        try_to_write(journal, true);
     if (journal->taken.count)
         log_err(journal->log, "alarms: %zu alarm events lost: the alarm journal could not be written", journal->taken.count);
     return NULL;

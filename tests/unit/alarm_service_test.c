@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Alarms for the live readings of a plant: the alarm service journals them, and restores them after kill -9 and from a damaged journal. */
 #include "tests/support/test.h"
+#include <errno.h>
 #include <stdatomic.h>
 #include <signal.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -266,6 +268,26 @@ CASE(a_damaged_journal_is_set_aside)
     assert_int_equal(wait_for(s, ALARM_UNACKNOWLEDGED, TAGS), TAGS);
     alarm_service_stop(&s->alarm_service); /* stopping writes all pending rows */
     assert_int_equal(read_rows(s, NULL, 100000, INT64_MAX).count, TAGS);
+}
+
+/* The journal cannot be read when the daemon starts, and can be used a moment later. No alarm changes meanwhile. */
+CASE(a_journal_that_failed_is_tried_again_without_alarms)
+{
+    const struct alarms_listener listener = { 0 };
+    const struct journal_params params = { .log = s->log, .counters = s->counters, .folder = s->folder, .keep_days = 400 };
+    struct alarms *alarms = alarms_create(s->plant, &listener);
+    char *blocked = test_printf("%s/" JOURNAL_FILE, s->folder);
+    assert_int_equal(mkdir(blocked, 0755), 0);
+    struct journal *journal = journal_start(&params, alarms, (struct instant){ clock_mono_ns(), clock_utc_ns() });
+    assert_int_equal(journal_error(journal), -EISDIR);
+    assert_int_equal((int)counted(s, "plantcast_alarm_journal_good"), 0);
+    assert_int_equal(rmdir(blocked), 0);
+    for (int i = 0; journal_error(journal) && i < 3000; i++)
+        sleep_ns(10000000);
+    assert_int_equal(journal_error(journal), 0);
+    assert_int_equal((int)counted(s, "plantcast_alarm_journal_good"), 1);
+    assert_true(journal_stop(&journal));
+    alarms_destroy(&alarms);
 }
 
 static void mirror(void *arg, const struct journal_entry *row)
