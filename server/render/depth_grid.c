@@ -109,10 +109,10 @@ struct coder {
     const struct depth_cell *cells;
     const struct depth_lens *lens;
     int width_px, height_px, columns, rows;
-    /* depths; -INFINITY: background. They lie in the memory of `data`, which is written only after the codes are known */
+    /* depths; -INFINITY: background. They use the memory of `data`, which is written only after the codes are known */
     float *nears, *fars;
     uint16_t *near, *far;         /* depth codes */
-    uint16_t *symbols;            /* differences of a row of codes from their predictions, as they are written */
+    uint16_t *symbols;            /* differences of a row of codes from their predictions */
     struct divided_cell *divided; /* row by row */
     uint16_t *masks;              /* coarse masks of divided cells, at the index of the cell */
     size_t divided_count;

@@ -18,8 +18,9 @@ const CASES = ['orbit_1', 'orbit_3', 'orbit_6', 'nearer_5', 'nearer_10', 'nearer
 const OFF = 16;          // a pixel counts as different if a channel differs by at least this much, of 255
 const NEAREST = 0.05;    // same value as in app/picture/warp.js
 const MOST_ERROR = 0.03; // a value read from a colour counts as correct up to this error, as a fraction of the range
-const UNLIKE = 32;       // distance of two colours, in red, green and blue of 0..255, from which they are not like each other
-const SAME_HUE = 32;     // as in app/picture/painters/gl_painter.js
+// a pixel shows a colour of the map if its distance from it, in red, green and blue of 0..255, is below MOST_UNLIKE
+const MOST_UNLIKE = 32;
+const LIKE_HUE = 8, LIKE = 48; // as in app/picture/painters/gl_painter.js
 const REDUCED = 4, LATTICE_PX = 14, MARK = 0.08 * 255; // as in app/picture/warp.js
 
 const load = (name) => ({
@@ -166,9 +167,12 @@ function greyAt(greys, x, y, width, height) {
     return grey + (line ? MARK * wide : 0) * (grey > 0.4 * 255 ? -1 : 1);
 }
 
-// Returns whether two pixels have almost the same hue, as in the page's shader.
-const haveSameHue = (pixels, a, b) => [0, 1].every((c) =>
-    Math.abs(pixels[a + c] - pixels[a + c + 1] - pixels[b + c] + pixels[b + c + 1]) <= SAME_HUE);
+// Returns whether the page's shader mixes two pixels. a, b: their places in `pixels`.
+function areAlike(pixels, a, b) {
+    const [blue, green, red] = [0, 1, 2].map((c) => pixels[a + c] - pixels[b + c]);
+    return Math.abs(red - green) <= LIKE_HUE && Math.abs(green - blue) <= LIKE_HUE
+        && Math.max(Math.abs(red), Math.abs(green), Math.abs(blue)) <= LIKE;
+}
 
 // Writes the colour of pixel `i` of the warped picture to `out`: a mixture of up to four neighbouring pixels of the first
 // picture, as in the page's shader.
@@ -181,7 +185,7 @@ function mix({ pixels, width, height }, { grid, shown, places, isMasked }, i, ou
     for (let k = 0; k < 4; k++) {
         const column = Math.max(0, Math.min(width - 1, left + (k & 1))), row = Math.max(0, Math.min(height - 1, top + (k >> 1)));
         const share = Math.abs(1 - (k & 1) - x + left) * Math.abs(1 - (k >> 1) - y + top), at = 4 * (row * width + column);
-        if (isMasked[i] && isNear(column, row) !== ownSide || !haveSameHue(pixels, at, 4 * own))
+        if (isMasked[i] && isNear(column, row) !== ownSide || !areAlike(pixels, at, 4 * own))
             continue;
         sum.forEach((_, c) => { sum[c] += share * pixels[at + c]; });
         shares += share;
@@ -229,7 +233,7 @@ function movedPicture(first, second) {
 function reader(map) {
     const known = new Map();
     const find = (red, green, blue) => {
-        let best = -1, least = UNLIKE ** 2;
+        let best = -1, least = MOST_UNLIKE ** 2;
         for (let i = 0; i < 256; i++) {
             const by = (map[3 * i] - red) ** 2 + (map[3 * i + 1] - green) ** 2 + (map[3 * i + 2] - blue) ** 2;
             [best, least] = by < least ? [i, by] : [best, least];

@@ -307,11 +307,13 @@ static void compare_kernels(const struct view *view, const struct soft_kernels *
     struct frame *same = stand_draw(&stand, view);
     *kernels = widest;
     assert_memory_equal(wide->bgrx, same->bgrx, (size_t)wide->stride_bytes * (size_t)wide->height_px);
+    assert_non_null(wide->depth[0]);
+    assert_true(depth_grid_equal(wide->depth[0], same->depth[0]));
     frame_unref(&wide);
     frame_unref(&same);
 }
 
-/* The loops compiled for different vector widths must give bit-identical frames. */
+/* The loops compiled for different vector widths must give bit-identical frames and depth grids. */
 TEST(test_kernels)
 {
     const struct soft_kernels *widest = stand.renderer->by_soft->kernels;
@@ -322,6 +324,7 @@ TEST(test_kernels)
         print_message("SKIP: this machine has no wider registers\n");
         skip();
     }
+    renderer_set_depth(stand.renderer, true);
     for (int i = 0; i < 24 * OTHER_KERNELS; i++) {
         if (other_kernels[i / 24] == widest)
             break;
@@ -334,6 +337,7 @@ TEST(test_kernels)
             soft_cut_at(&view, 0, 0.6, 0.64, -0.48, 0.3);
         compare_kernels(&view, other_kernels[i / 24]);
     }
+    renderer_set_depth(stand.renderer, false);
 }
 
 /* Views in which only the sky is visible: wide and tall pictures, narrow and wide angles, level and tilted cameras. */

@@ -324,33 +324,31 @@ async function faultsOf(page, seen) {
     return { off, beyond };
 }
 
-// Draws pictures of four columns with the WebGL painter, moved to the right by a quarter of a pixel. Returns the red of a row of a picture
-// with two shades of red; the hues of one with red and blue; the red of one with two shades on two surfaces.
+// Draws pictures of four columns with the WebGL painter, moved to the right by a quarter of a pixel. Returns the red values of
+// a row of pictures with two columns of one colour and two of another: colours that are alike; shades that differ much; hues
+// that differ; alike, but on both sides of a step in depth; alike, but in the two halves of a split view.
 const paintMoved = (page) => page.evaluate(async () => {
     const { GlPainter } = await import('/app/picture/painters/gl_painter.js');
-    const canvas = document.createElement('canvas'), gl = canvas.getContext('webgl2', { antialias: false }), painter = new GlPainter(gl);
-    const SIZE = { width: 4, height: 4 }, BOX = { left: 0, top: 0, ...SIZE };
-    const matrix = [0.5, 0, 0, 0, 0, -0.5, 0, 0, 0, 0, 1, 0, 0.125 - 1, 1, 0, 1];
-    const paint = (columns, kinds) => {
-        const picture = new ImageData(SIZE.width, SIZE.height);
-        picture.data.set(Array.from({ length: 4 }, () => columns.flat()).flat());
-        const vertices = kinds.flatMap((kind) => [[0, 0], [4, 0], [0, 4], [4, 4]].flatMap(([x, y]) => [x, y, 0, kind]));
+    const gl = document.createElement('canvas').getContext('webgl2', { antialias: false }), painter = new GlPainter(gl);
+    painter.resize(4, 4);
+    const paint = (left, right, kinds, parts = 1) => {
+        const picture = new ImageData(4, 4), width = 4 / parts, seen = new Uint8Array(16);
+        picture.data.set(Array.from({ length: 4 }, () => [left, left, right, right].flat()).flat());
+        const vertices = kinds.flatMap((kind) => [[0, 0], [width, 0], [0, 4], [width, 4]].flatMap(([x, y]) => [x, y, 0, kind]));
         const indices = kinds.flatMap((_, k) => [0, 2, 1, 1, 2, 3, 0, 1, 2, 1, 3, 2].map((i) => 4 * k + i)); // seen from both sides
-        const masks = Uint8Array.from({ length: 16 }, (_, i) => (i % 4 < 2 ? 255 : 0));
-        const grid = { x: 0, y: 0, ...SIZE, cellPx: 4, maskSide: 4, columns: 1, rows: 1, masks };
-        painter.resize(SIZE.width, SIZE.height);
-        painter.load(picture, [{ grid, mesh: { vertices: new Float32Array(vertices), indices: new Uint32Array(indices) } }]);
-        painter.paint([matrix], [BOX], 14, 0);
-        const seen = new Uint8Array(16);
+        const masks = Uint8Array.from({ length: 16 }, (_, i) => (i % 4 < 2 ? 255 : 0)), mesh = { vertices: new Float32Array(vertices),
+            indices: new Uint32Array(indices) };
+        const halves = Array.from({ length: parts }, (_, k) => (
+            { mesh, grid: { x: k * width, y: 0, width, height: 4, cellPx: 4, maskSide: 4, columns: 1, rows: 1, masks } }));
+        painter.load(picture, halves);
+        painter.paint(halves.map(() => [2 / width, 0, 0, 0, 0, -0.5, 0, 0, 0, 0, 1, 0, 0.5 / width - 1, 1, 0, 1]),
+            halves.map(({ grid }) => ({ left: grid.x, top: 0, width, height: 4 })), 14, 0);
         gl.readPixels(0, 1, 4, 1, gl.RGBA, gl.UNSIGNED_BYTE, seen);
-        return [0, 1, 2, 3].map((i) => seen.slice(4 * i, 4 * i + 4));
+        return [0, 4, 8, 12].map((i) => seen[i]);
     };
-    const red = [200, 0, 0, 255], dark = [100, 80, 80, 255], light = [200, 180, 180, 255];
-    const blue = [0, 0, 200, 255], redsOf = (pixels) => pixels.map(([value]) => value);
-    const hueOf = ([r, , b]) => (r > 0 && b > 0 ? 'mixed' : r > 0 ? 'red' : 'blue');
-    return { shades: redsOf(paint([dark, dark, light, light], [0])),
-        hues: paint([red, red, blue, blue], [0]).map(hueOf),
-        surfaces: redsOf(paint([dark, dark, light, light], [1, 2])) };
+    const dark = [100, 80, 80, 255], alike = [140, 120, 120, 255], light = [200, 180, 180, 255], green = [80, 110, 80, 255];
+    return { alike: paint(dark, alike, [0]), shades: paint(dark, light, [0]), hues: paint(dark, green, [0]),
+        steps: paint(dark, alike, [1, 2]), halves: paint(dark, alike, [0], 2) };
 });
 
 const followsHand = (painter, ...script) => async (t) => {
@@ -401,8 +399,9 @@ const followsHand = (painter, ...script) => async (t) => {
         while (rest.news > 0); // repeats if the server sent a message meanwhile, such as a reading that arrived late on a busy machine
         assert.deepEqual(rest, { frames: 0, draws: 0, timers: [], news: 0 }, 'a still view causes no frames, draws or timers');
         if (painter === 'GlPainter') {
-            assert.deepEqual(await paintMoved(page), { shades: [100, 100, 175, 200], hues: ['red', 'red', 'blue', 'blue'],
-                surfaces: [100, 100, 186, 200] }, 'pixels are mixed only with pixels of their hue and surface');
+            // at a step in depth, the farther pixel next to it is grey (126)
+            assert.deepEqual(await paintMoved(page), { alike: [100, 100, 130, 140], shades: [100, 100, 200, 200], hues: [100, 100, 80, 80],
+                steps: [100, 100, 126, 140], halves: [100, 100, 140, 140] });
             await loseContext(page);
         }
         assert.deepEqual(errors, []);

@@ -53,8 +53,7 @@ export class Painter {
         this.board = programOf(gl, BOARD, CANVAS);
         this.undrawn = programOf(gl, RAYS, LATTICE);
         this.grey = UNDRAWN[backdrop] ?? UNDRAWN.light;
-        // NEAREST filter: colours of the picture are not mixed, because users would read a mixture of two colours as the value
-        // between them
+        // NEAREST filter: the shader decides which pixels are mixed
         this.picture = this.newTexture(gl.NEAREST);
         this.masks = this.newTexture(gl.NEAREST);
         gl.depthFunc(gl.LEQUAL);

@@ -12,10 +12,12 @@ void main() {
     kind = vertex.w;
     gl_Position = warp * vec4(vertex.xyz, 1.0);
 }`;
-// Draws the picture on its depth mesh. Interpolates between neighbouring pixels of the picture, but only if they belong to the
-// same surface and have almost the same hue: users would read a mixture of two colours as the value between them. Where the
-// picture's depth has a step, edge pixels of the farther surface contain a part of the nearer surface's colour. They become
-// grey, for the same reason.
+// Draws the picture on its depth mesh. Interpolates between neighbouring pixels of the picture, but only if their colours are
+// alike and they lie on the same side of a step in depth: users would read a mixture of two colours as the value between them.
+// With the product's colour maps, the limits below keep the value of a mixture within 4.3 % of the range from one of its
+// pixels. Where the picture's depth has a step, edge pixels of the farther surface contain a part of the nearer surface's
+// colour. They become grey, for the same reason. LIKE_HUE, LIKE: greatest differences between pixels that are mixed; LIKE_HUE: of
+// red - green and of green - blue; LIKE: of red, green and blue.
 export const PICTURE = `#version 300 es
 precision highp float;
 in vec2 at;
@@ -24,12 +26,14 @@ uniform sampler2D picture, masks;
 uniform vec2 origin, extent, size;
 uniform float bit;
 out vec4 colour;
-const float SAME_HUE = 32.0 / 255.0; // greatest difference of red - green and of green - blue between pixels that are mixed
+const float LIKE_HUE = 8.5 / 255.0, LIKE = 48.5 / 255.0;
 vec3 pixelAt(vec2 place) {
     return texelFetch(picture, ivec2((origin + place) / size * vec2(textureSize(picture, 0))), 0).rgb;
 }
-vec2 hueOf(vec3 pixel) {
-    return pixel.rg - pixel.gb;
+bool areAlike(vec3 a, vec3 b) {
+    vec3 by = abs(a - b);
+    vec2 hue = abs(a.rg - a.gb - b.rg + b.gb);
+    return max(hue.x, hue.y) <= LIKE_HUE && max(by.r, max(by.g, by.b)) <= LIKE;
 }
 bool isNear(float x, float y) {
     return texelFetch(masks, ivec2(vec2(x, y) / bit), 0).r > 0.5;
@@ -43,9 +47,9 @@ void main() {
     for (int i = 0; i < 4; i++) {
         vec2 offset = vec2(i & 1, i >> 1), place = clamp(corner + offset + 0.5, vec2(0.5), extent - 0.5);
         vec3 pixel = pixelAt(place);
-        vec2 hue = abs(hueOf(pixel) - hueOf(own)), part = mix(1.0 - share, share, offset);
+        vec2 part = mix(1.0 - share, share, offset);
         bool isOther = kind > 0.5 && isNear(place.x, place.y) != (kind < 1.5);
-        sum += isOther || max(hue.x, hue.y) > SAME_HUE ? vec4(0.0) : part.x * part.y * vec4(pixel, 1.0);
+        sum += isOther || !areAlike(pixel, own) ? vec4(0.0) : part.x * part.y * vec4(pixel, 1.0);
     }
     colour = sum.a > 0.0 ? vec4(sum.rgb / sum.a, 1.0) : vec4(own, 1.0);
     if (kind > 1.5 && (isNear(at.x - bit, at.y) || isNear(at.x + bit, at.y) || isNear(at.x, at.y - bit) || isNear(at.x, at.y + bit)))
