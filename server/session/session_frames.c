@@ -428,6 +428,7 @@ struct encoded_frame *session_next_frame(struct session *session, int64_t now_ns
     const struct frame_request *request = &encoded->request;
     struct pacer_note note = { .moving = request->view.tier == TIER_PREVIEW,
                                .full = request->view.tier == TIER_REFINED && !request->draft,
+                               .preview = session_times(request),
                                .counts = counts_for_size(session, request),
                                .of_data = request->of_data,
                                .step = request->step,

@@ -62,7 +62,7 @@ static double run(struct busy_server *server, double seconds)
         for (int i = 0; i < server->count; i++, pictures++) {
             struct pacer *pacer = &server->pacers[i];
             double scale = quality_ladder_rung(&pacer->ladder, 0).scale;
-            struct pacer_note note = { .moving = true, .counts = true };
+            struct pacer_note note = { .moving = true, .preview = true, .counts = true };
             while (pacer->asked < 2)
                 pacer_asked(pacer, true, server->now_ns);
             server->now_ns += (int64_t)(server->full_ns * (1 + 2 * scale * scale) / 3);
@@ -126,7 +126,7 @@ TEST(single_slow_pictures_change_nothing)
     struct pacer pacer;
     pacer_init(&pacer);
     for (int64_t now_ns = NS_PER_S; now_ns < 60 * NS_PER_S; now_ns += NS_PER_S) {
-        struct pacer_note note = { .moving = true, .counts = true, .made_ns = now_ns + 400 * MS };
+        struct pacer_note note = { .moving = true, .preview = true, .counts = true, .made_ns = now_ns + 400 * MS };
         pacer_asked(&pacer, true, now_ns);
         uint32_t seq = pacer_sent(&pacer, 1000, &note, note.made_ns);
         pacer_wrote(&pacer, true, note.made_ns);
@@ -144,7 +144,7 @@ TEST(what_does_not_count_changes_nothing)
         pacer_init(&pacer);
         pacer_asked(&pacer, true, NS_PER_S);
         for (int64_t now_ns = NS_PER_S; now_ns < 20 * NS_PER_S; now_ns += 200 * MS) {
-            struct pacer_note note = { .moving = true, .counts = way > 0, .made_ns = now_ns };
+            struct pacer_note note = { .moving = true, .preview = true, .counts = way > 0, .made_ns = now_ns };
             pacer_asked(&pacer, true, now_ns);
             if (way == 1) {
                 pacer_dropped(&pacer, true);
@@ -166,7 +166,7 @@ TEST(the_wait_of_another_frame_is_not_that_of_a_preview)
         struct pacer pacer;
         pacer_init(&pacer);
         for (int64_t now_ns = NS_PER_S; now_ns < 20 * NS_PER_S; now_ns += 600 * MS) {
-            struct pacer_note note = { .moving = true, .counts = true, .made_ns = now_ns + 520 * MS };
+            struct pacer_note note = { .moving = true, .preview = true, .counts = true, .made_ns = now_ns + 520 * MS };
             pacer_asked(&pacer, way == 2, now_ns);
             if (way == 1)
                 pacer_asked(&pacer, true, now_ns + 500 * MS);
@@ -222,7 +222,7 @@ TEST(a_network_that_limits_the_rate_is_not_a_slow_server)
     struct pacer pacer;
     pacer_init(&pacer);
     for (int64_t now_ns = NS_PER_S; now_ns < 60 * NS_PER_S; now_ns += 500 * MS) {
-        struct pacer_note note = { .moving = true, .counts = true, .made_ns = now_ns + 20 * MS };
+        struct pacer_note note = { .moving = true, .preview = true, .counts = true, .made_ns = now_ns + 20 * MS };
         pacer_asked(&pacer, true, now_ns);
         uint32_t seq = pacer_sent(&pacer, 1000, &note, note.made_ns);
         pacer_wrote(&pacer, true, note.made_ns);
@@ -237,7 +237,7 @@ TEST(a_slow_server_behind_a_slow_network_makes_smaller_pictures)
     struct pacer pacer;
     pacer_init(&pacer);
     for (int64_t now_ns = NS_PER_S; now_ns < 10 * NS_PER_S; now_ns += 450 * MS) {
-        struct pacer_note note = { .moving = true, .counts = true, .made_ns = now_ns + 400 * MS };
+        struct pacer_note note = { .moving = true, .preview = true, .counts = true, .made_ns = now_ns + 400 * MS };
         pacer_asked(&pacer, true, now_ns);
         uint32_t seq = pacer_sent(&pacer, 1000, &note, note.made_ns);
         pacer_wrote(&pacer, true, note.made_ns);

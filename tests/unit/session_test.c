@@ -1167,6 +1167,31 @@ CASE(a_follower_is_shown_its_leaders_view)
     session_destroy(&leader);
 }
 
+/* A follower's previews do not count for the size of pictures, but each one that is sent is no longer owed. Otherwise the first
+   preview after following would be timed from the request of an old one. */
+CASE(previews_sent_to_a_follower_are_no_longer_owed)
+{
+    struct session *leader = session_create(&f->context, 8, f->now_ns);
+    const struct pacer *pacer = &f->session->delivery.pacer;
+    struct frame_request requests[2];
+    session_on_message(leader, HELLO, sizeof(HELLO) - 1, f->now_ns, f->now_ns);
+    greet(f);
+    show(f);
+    session_follow(f->session, leader, f->now_ns);
+    for (int i = 0; i < 2; i++) {
+        const char *camera = test_printf("{\"type\":\"camera\",\"seq\":%d,\"eye\":[%d,4,5],\"target\":[0,0,1]}", i + 1, i + 3);
+        session_on_message(leader, camera, strlen(camera), f->now_ns, f->now_ns);
+        session_on_leader(f->session, f->now_ns);
+        assert_true(ask(f, &requests[i]));
+    }
+    assert_true(pacer->asked == 2 && pacer->previews == 2);
+    paint(f, &requests[0], false);
+    ack(f, send_picture(f));
+    assert_true(pacer->asked == 1 && pacer->previews == 1);
+    session_leader_gone(f->session, f->now_ns);
+    session_destroy(&leader);
+}
+
 CASE(pings_come_back_exactly)
 {
     say(f, "{\"type\":\"ping\",\"t\":123456.78901234567}");

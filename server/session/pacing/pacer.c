@@ -114,7 +114,7 @@ uint32_t pacer_sent(struct pacer *pacer, size_t bytes, const struct pacer_note *
 {
     assert(pacer->asked > 0 && pacer->flight_count < PACER_MOST);
     pacer->asked--;
-    subtract(pacer, note->counts);
+    subtract(pacer, note->preview);
     measure_making(pacer, note, now_ns);
     pacer->last_seq = pacer->last_seq == UINT32_MAX ? 1 : pacer->last_seq + 1;
     pacer->moved_on_ns = now_ns;

@@ -16,7 +16,8 @@ struct pacer_note {    /* properties of a sent frame that are needed when the cl
     bool moving, full;
     int step;
     double scale; /* preview: factor by which width and height are smaller than those of the view; 0: as at its step */
-    bool counts;  /* true: the time for making the frame counts for the size of later previews */
+    bool preview; /* as for pacer_asked() */
+    bool counts;  /* true: the time for making the frame counts for the size of later previews; only if `preview` is set, too */
     bool of_data; /* true: the frame was made because a reading changed; false: because of an input */
     /* monotonic: input_ns: time of the input or the changed reading; made_ns: when the frame was encoded */
     int64_t input_ns, made_ns;
@@ -33,8 +34,8 @@ struct pacer_flight {
 
 struct pacer {                              /* limits the frames under way to one client; initialise with pacer_init() */
     int asked;                              /* number of frames requested from the render service for the client and not sent yet */
-    int previews;                           /* number of these that are previews of a moving camera, whose time counts */
-    bool newest_is_preview;                 /* true: the newest request is such a preview */
+    int previews;                           /* number of the frames in `asked` that are previews of a moving camera */
+    bool newest_is_preview;                 /* true: the newest requested frame is a preview of a moving camera */
     /* monotonic time since which the render service has owed the client a preview: of the client's last frame, or of the request
        if that came later; 0: not known */
     int64_t owed_since_ns;
@@ -57,17 +58,17 @@ enum pacer_ack { PACER_ACK_NEW, PACER_ACK_OLD, PACER_ACK_NEVER_SENT };
 void pacer_init(struct pacer *pacer);
 /* Returns whether another frame may be requested for the client now. */
 bool pacer_may_ask(const struct pacer *pacer, int64_t now_ns);
-/* Counts a frame that was requested. preview: the frame is a preview of a moving camera, as `counts` in struct pacer_note; only
-   the time for such frames is measured. */
+/* Counts a frame that was requested. preview: the frame is a preview of a moving camera. Only the time for making such previews is
+   measured. The caller passes the same value when the frame is dropped or sent (`preview` in struct pacer_note). */
 void pacer_asked(struct pacer *pacer, bool preview, int64_t now_ns);
-/* Notes that the newest requested frame, whose drawing has not begun, was replaced by another one. preview: as for pacer_asked(). */
+/* Counts a request that replaces the newest one, whose drawing has not begun. preview: of the new request, as for pacer_asked(). */
 void pacer_replaced(struct pacer *pacer, bool preview, int64_t now_ns);
 /* Counts a requested frame that will not be sent: the render service does not deliver it, or the session drops it. preview: as for
    pacer_asked(). */
 void pacer_dropped(struct pacer *pacer, bool preview);
 /* Counts a frame whose first byte is being sent. Returns the frame's sequence number in the session. */
 uint32_t pacer_sent(struct pacer *pacer, size_t bytes, const struct pacer_note *note, int64_t now_ns);
-/* Notes that the socket accepted a part of the newest frame. all: true: this was the frame's last part. */
+/* Records that the socket has accepted a part of the newest frame. all: true: this was the frame's last part. */
 void pacer_wrote(struct pacer *pacer, bool all, int64_t now_ns);
 /* Records that the rest of the newest frame is not sent, so that the client will not acknowledge the frame. */
 void pacer_gave_up(struct pacer *pacer);
