@@ -696,7 +696,7 @@ why: Der Server kann einige seiner Dateien nicht verwenden; den Grund nennt sein
 readings: Messwerte
 alarms: Alarmänderungen
 actions: Audit-Trail
-lists: Ansichten und Notizen
+lists: Ansichten, Notizen und andere Listen
 
 [standby]
 plant: Anlagendatei

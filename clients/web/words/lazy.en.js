@@ -695,7 +695,7 @@ why: The server cannot use some of its files; the server's log says why.
 readings: readings
 alarms: alarm changes
 actions: audit trail
-lists: views and notes
+lists: views, notes and other lists
 
 [standby]
 plant: plant file

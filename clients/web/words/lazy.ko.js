@@ -686,7 +686,7 @@ why: 서버가 일부 파일을 사용할 수 없습니다. 이유는 서버 로
 readings: 측정값
 alarms: 알람 변경
 actions: 감사 기록
-lists: 뷰와 메모
+lists: 뷰, 메모 및 기타 목록
 
 [standby]
 plant: 플랜트 파일
