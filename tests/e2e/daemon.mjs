@@ -120,6 +120,33 @@ test('--check reads the files that options name, and names one that cannot be us
     assert.match(runProgram('plantcastd', ['--check', plant.file, '--tls-cert', wrong]).err, /give both --tls-cert and --tls-key/);
 });
 
+// Opens a connection to the daemon. `said` is what the daemon sent; `ended` resolves when the connection is closed.
+function openRaw(port) {
+    const socket = connect(port, '127.0.0.1'), raw = { socket, said: '', answers: () => raw.said.match(/HTTP\/1\.1 \d+/g) ?? [] };
+    socket.on('data', (bytes) => { raw.said += bytes; }).on('error', () => {});
+    raw.ended = new Promise((done) => socket.once('close', done));
+    raw.answered = () => until('an answer', () => /\r\n\r\n[^]*\n$/.test(raw.said));
+    return raw;
+}
+
+test('a client that pauses while it sends the body of a refused request gets one answer', { skip }, async () => {
+    const slow = openRaw(plant.port), part = Buffer.alloc(65536), head = `Host: 127.0.0.1:${plant.port}\r\n`;
+    slow.socket.write(`POST /x HTTP/1.1\r\n${head}Content-Length: ${3 * part.length}\r\n\r\n`);
+    slow.socket.write(part);
+    await slow.answered();
+    await new Promise((done) => slow.socket.write(part, done));
+    // Two incomplete heads, one after the other: when the second one is refused, the pause has lasted twice as long.
+    for (let i = 0; i < 2; i++) {
+        const stalled = openRaw(plant.port);
+        stalled.socket.write('GET / HTTP/1.1\r\nAcc:');
+        await stalled.ended;
+        assert.deepEqual(stalled.answers(), ['HTTP/1.1 408']);
+    }
+    slow.socket.write(part);
+    await slow.ended;
+    assert.deepEqual(slow.answers(), ['HTTP/1.1 405'], slow.said);
+});
+
 test('HTTP: valid and invalid paths get well-formed answers', { skip }, async () => {
     const { port } = plant;
     const there = {

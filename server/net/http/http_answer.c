@@ -141,12 +141,12 @@ int request_done(struct http_exchange *request)
     request_hold(request, NULL, 0);
     request->pieces = PIECES_NONE;
     connection_set_answered(server_context_of(request->wsi), request->wsi, true);
-    stuck_head_await(request->wsi, false);
     /* A connection that is closed while the client still sends is reset, and the client then loses the answer. */
     if (request->body_left > 0) {
         request->discards_until_ns = clock_mono_ns() + DISCARD_NS;
         return 0;
     }
+    stuck_head_await(request->wsi, false);
     return closes(request) || lws_http_transaction_completed(request->wsi) ? -1 : 0;
 }
 
