@@ -147,6 +147,19 @@ test('a client that pauses while it sends the body of a refused request gets one
     assert.deepEqual(slow.answers(), ['HTTP/1.1 405'], slow.said);
 });
 
+test('a refused request with a chunked body is closed at once if nobody would read its body', { skip }, async () => {
+    const chunked = async (method) => {
+        const raw = openRaw(plant.port), head = `Host: 127.0.0.1:${plant.port}\r\nTransfer-Encoding: chunked\r\n`;
+        raw.socket.write(`${method} / HTTP/1.1\r\n${head}\r\n5\r\nhello\r\n0\r\n\r\n`);
+        await raw.answered();
+        assert.deepEqual(raw.answers(), ['HTTP/1.1 405'], raw.said);
+        return { ended: raw.ended.then(() => method) };
+    };
+    // libwebsockets does not recognize the end of POST's body, so this connection stays open until a timeout
+    const post = await chunked('POST'), other = await chunked('DELETE');
+    assert.equal(await Promise.race([post.ended, other.ended]), 'DELETE');
+});
+
 test('HTTP: valid and invalid paths get well-formed answers', { skip }, async () => {
     const { port } = plant;
     const there = {

@@ -227,11 +227,14 @@ static int refuse_method(const struct server_context *server, struct http_exchan
                           posts ? "POST" : "GET, HEAD");
 }
 
-/* Returns the number of bytes of the body that a request announces; INT64_MAX: not known. */
+/* Returns the number of bytes of the body that a request announces; INT64_MAX: not known. libwebsockets reads a body without
+   Content-Length only for POST, PUT and PATCH; for other methods nobody would read it, and its end would never come. */
 static int64_t announced_bytes(struct lws *wsi)
 {
     char length[32];
-    if (lws_hdr_total_length(wsi, WSI_TOKEN_HTTP_TRANSFER_ENCODING) > 0)
+    bool reads = lws_hdr_total_length(wsi, WSI_TOKEN_POST_URI) > 0 || lws_hdr_total_length(wsi, WSI_TOKEN_PUT_URI) > 0 ||
+                 lws_hdr_total_length(wsi, WSI_TOKEN_PATCH_URI) > 0;
+    if (reads && lws_hdr_total_length(wsi, WSI_TOKEN_HTTP_TRANSFER_ENCODING) > 0)
         return INT64_MAX;
     return connection_header(wsi, WSI_TOKEN_HTTP_CONTENT_LENGTH, length, sizeof(length)) ? strtoll(length, NULL, 10) : 0;
 }
