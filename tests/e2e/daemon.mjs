@@ -160,6 +160,16 @@ test('a refused request with a chunked body is closed at once if nobody would re
     assert.equal(await Promise.race([post.ended, other.ended]), 'DELETE');
 });
 
+test('an answer that says "connection: close" ends the connection, even if the body arrived before it was sent', { skip }, async () => {
+    const raw = openRaw(plant.port);
+    raw.socket.write('POST /api/v1/reload HTTP/1.1\r\nHost: elsewhere.example\r\nContent-Length: 5\r\n\r\nhello');
+    await raw.answered();
+    assert.match(raw.said, /^HTTP\/1\.1 4\d\d [^]*connection: close/i);
+    raw.socket.write(`GET /healthz HTTP/1.1\r\nHost: 127.0.0.1:${plant.port}\r\n\r\n`);
+    await raw.ended;
+    assert.equal(raw.answers().length, 1, raw.said);
+});
+
 test('HTTP: valid and invalid paths get well-formed answers', { skip }, async () => {
     const { port } = plant;
     const there = {

@@ -250,6 +250,7 @@ static int serve(struct server_context *server, struct http_exchange *request, c
        connection */
     request->sandboxed = false;
     request->body_left = get || request->head ? 0 : announced_bytes(request->wsi);
+    request->close |= request->body_left > 0; /* the answer may be sent after the body has ended, but its head says "close" */
     counter_inc(server->counters.requests, 1);
     connection_set_answered(server, request->wsi, false);
     stuck_head_arrived(request->wsi);

@@ -31,7 +31,7 @@ static const int64_t DISCARD_NS = 30 * NS_PER_S;
 /* Returns whether the server closes the connection after this answer. */
 static bool closes(const struct http_exchange *request)
 {
-    return request->close || request->body_left > 0 || server_context_of(request->wsi)->life.goes_down;
+    return request->close || server_context_of(request->wsi)->life.goes_down;
 }
 
 /* Adds the status line and the body's headers. An answer in pieces has no Content-Length. Returns false if the headers do not fit. */
