@@ -34,9 +34,10 @@ static const char *why(char out[200])
     const char *reason = ERR_reason_error_string(code);
     if (ERR_SYSTEM_ERROR(code))
         snprintf(out, 200, "%s", strerror(ERR_GET_REASON(code)));
-    else if (ERR_GET_LIB(code) == ERR_LIB_PEM && ERR_GET_REASON(code) == PEM_R_NO_START_LINE)
+    else if ((ERR_GET_LIB(code) == ERR_LIB_PEM && ERR_GET_REASON(code) == PEM_R_NO_START_LINE) || ERR_GET_LIB(code) == ERR_LIB_OSSL_DECODER)
         snprintf(out, 200, "the file contains no certificate, or no private key, in PEM format");
-    else if (ERR_GET_LIB(code) == ERR_LIB_X509 && ERR_GET_REASON(code) == X509_R_KEY_VALUES_MISMATCH)
+    else if ((ERR_GET_LIB(code) == ERR_LIB_X509 && ERR_GET_REASON(code) == X509_R_KEY_VALUES_MISMATCH) ||
+             (ERR_GET_LIB(code) == ERR_LIB_SSL && ERR_GET_REASON(code) == SSL_R_NO_CERTIFICATE_ASSIGNED))
         snprintf(out, 200, "this private key does not belong to the certificate");
     else if (code)
         snprintf(out, 200, "%s (OpenSSL error %08lX)", reason ? reason : "unknown reason", code);

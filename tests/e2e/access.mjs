@@ -2,7 +2,7 @@
 // Tests the access control of a running daemon: TLS, tokens with roles, every way to send a token, and revocation. Foreign host
 // names and pages of other sites must be refused, also behind a proxy. The page must ask users for a token.
 import assert from 'node:assert/strict';
-import { spawn } from 'node:child_process';
+import { spawn, spawnSync } from 'node:child_process';
 import { chmodSync, copyFileSync, existsSync, readFileSync, unlinkSync, writeFileSync } from 'node:fs';
 import { request } from 'node:https';
 import { connect as connectTls } from 'node:tls';
@@ -239,12 +239,16 @@ test('the daemon refuses to start for other hosts without TLS and tokens, or wit
     const bad = path('readable');
     copyFileSync(tokensFile, bad);
     chmodSync(bad, 0o644);
+    assert.equal(spawnSync('openssl', ['genpkey', '-algorithm', 'RSA', '-out', path('rsa.key')]).status, 0);
     const cases = [
         [['--listen', '0.0.0.0'], /--open-viewers/], [['--listen', '0.0.0.0', '--tokens', tokensFile], /TLS and tokens/],
         [['--tokens', bad], /other users may read/], [['--tokens', path('none')], /No such file/],
         [['--tls-cert', path('first.pem')], /give both --tls-cert and --tls-key/],
         [['--tls-cert', path('first.pem'), '--tls-key', path('second.key')], /TLS: \S+second\.key: this private key does not belong to/],
         [['--tls-cert', plant.file, '--tls-key', path('first.key')], /TLS: \S+plant\.yaml: the file contains no certificate/],
+        [['--tls-cert', path('first.pem'), '--tls-key', plant.file], /TLS: \S+plant\.yaml: the file contains no .*private key/],
+        [['--tls-cert', path('first.pem'), '--tls-key', path('first.pem')], /TLS: \S+first\.pem: the file contains no .*private key/],
+        [['--tls-cert', path('first.pem'), '--tls-key', path('rsa.key')], /TLS: \S+rsa\.key: this private key does not belong to/],
         [['--tls-cert', path('none.pem'), '--tls-key', path('first.key')], /TLS: \S+none\.pem: No such file or directory$/m],
         [['--behind-proxy'], /needs --tokens/],
         [['--behind-proxy', '--tokens', tokensFile], /--host/],
