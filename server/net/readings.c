@@ -31,7 +31,7 @@ bool net_take_snapshot(struct server_context *server)
     return changed;
 }
 
-/* Returns what is not recorded, because a file cannot be used; see session_context. */
+/* Returns the bit mask of entries (enum unrecorded) that this daemon does not record, because it cannot use a file. */
 static unsigned find_unrecorded(const struct server_context *server)
 {
     const struct plant_services *plant = &server->params.plant;

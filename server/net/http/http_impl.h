@@ -23,8 +23,8 @@ struct http_exchange {
     bool head;              /* true: the request's method is HEAD, so the answer has no body */
     bool close;             /* true: the connection is to be closed once this answer is sent */
     int64_t body_left;      /* number of bytes of the request's body that have not arrived yet */
-    /* monotonic time until which the rest of the body is read and discarded, because the request was answered without it; 0: it
-       was not */
+    /* monotonic time until which the rest of the body is read and discarded, because the request was answered before the body had
+       arrived; 0: the request was not answered so early */
     int64_t discards_until_ns;
     bool sandboxed; /* true: the answer belongs to a sandboxed document (opaque origin), which Chromium runs in a process of its own */
     bool varies;            /* true: the next answer depends on the request's header Accept-Encoding */
