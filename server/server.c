@@ -459,8 +459,8 @@ static bool make_keeper(struct server *server)
 }
 
 /* Locks the history folder until this process ends, because two daemons would overwrite each other's lists, and record all readings
-   and alarms twice. Waits for HISTORY_WAIT_MS, for a daemon that is just ending. If the folder cannot be opened or locked at all, the
-   daemon starts nevertheless, and whatever writes to the folder logs why. */
+   and alarms twice. Waits for HISTORY_WAIT_MS, for a daemon that is just ending; SIGTERM kills the process during this wait. If the
+   folder cannot be opened or locked at all, the daemon starts nevertheless, and whatever writes to the folder logs why. */
 static bool lock_history_folder(struct server *server)
 {
     enum { HISTORY_WAIT_MS = 5000, LOOK_MS = 50 };
@@ -472,7 +472,7 @@ static bool lock_history_folder(struct server *server)
     if (server->history_lock < 0)
         return true;
     bool locked = flock(server->history_lock, LOCK_EX | LOCK_NB) == 0, used = !locked && errno == EWOULDBLOCK;
-    for (int ms = 0; used && ms < HISTORY_WAIT_MS && !atomic_load(&told_to_end); ms += LOOK_MS) {
+    for (int ms = 0; used && ms < HISTORY_WAIT_MS; ms += LOOK_MS) {
         nanosleep(&(struct timespec){ .tv_nsec = LOOK_MS * NS_PER_MS }, NULL);
         used = flock(server->history_lock, LOCK_EX | LOCK_NB) != 0;
     }
@@ -505,12 +505,13 @@ static bool server_start(struct server *server)
     if (!read_plant(server))
         return false;
     log_set_plant(server->log, server->runtime->plant->name);
-    if (!start_audit(server))
-        return false;
     set_time_zone(server->runtime->plant);
     if (server->params.socket_fd < 0 && !net_port_free(server->log, server->params.address, server->params.port))
         return false;
     if (!net_access_good(server->log, &server->params.access) || !load_signing_key(server))
+        return false;
+    /* locks before the audit trail is opened: a refused second daemon must not add lines to the trail of the running one */
+    if (!lock_history_folder(server) || !start_audit(server))
         return false;
     server->context.workers = server->workers = workers_create(0);
     if (!(server->context.file_writer = server->file_writer = file_writer_start(server->log, on_pictures, server)))
@@ -518,9 +519,9 @@ static bool server_start(struct server *server)
     server->web = find_web(server->params.web);
     reload_count(server->counters, server->runtime->plant->files.hash, true);
     supervision_starting(server->supervision, "drawing the first picture");
-    return make_keeper(server) && lock_history_folder(server) && plant_runtime_start_recording(server->runtime, NULL) &&
-           plant_runtime_start_sources(server->runtime) && plant_runtime_start_render_service(server->runtime, NULL, 0) &&
-           start_import(server) && start_agent(server) && start_net(server) && (!server->keeper || lease_keeper_start(server->keeper));
+    return make_keeper(server) && plant_runtime_start_recording(server->runtime, NULL) && plant_runtime_start_sources(server->runtime) &&
+           plant_runtime_start_render_service(server->runtime, NULL, 0) && start_import(server) && start_agent(server) &&
+           start_net(server) && (!server->keeper || lease_keeper_start(server->keeper));
 }
 
 /* Destroys the parts of the daemon, consumers before producers. */

@@ -36,13 +36,18 @@ const tagUntil = (client, index, what, question, timeoutMs) => client.until(`tag
 }, timeoutMs);
 
 test('a second daemon does not record in the same history folder, and starts once the first one has ended', { skip }, async () => {
-    const own = await TinyPlant.create(), history = join(own.folder, 'history');
+    const own = await TinyPlant.create(), history = join(own.folder, 'history'), trail = join(own.folder, 'audit.log');
+    const starts = () => readFileSync(trail, 'utf8').split('\n').filter((line) => /"event":\s*"start"/.test(line)).length;
+    const args = ['--history', history, '--audit', trail];
     try {
-        await own.start('--history', history);
-        const { code, err } = runProgram('plantcastd', [own.file, '--port', '0', '--history', history]);
+        await own.start(...args);
+        await until('the start in the audit trail', () => starts() === 1);
+        const { code, err } = runProgram('plantcastd', [own.file, '--port', '0', ...args]);
         assert.equal(code, 1, err);
         assert.match(err, /history: another daemon records in this history folder: stop that daemon, or give this one its own folder/);
+        assert.equal(starts(), 1, 'the refused daemon leaves the audit trail alone');
         await own.daemon.stop();
+        assert.equal(runProgram('plantcast', ['audit', 'verify', trail]).code, 0);
         await own.startDaemon('--history', history);
     } finally {
         await own.destroy();
