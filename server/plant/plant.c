@@ -2,6 +2,7 @@
 /* Loads a plant file with its tag list, and finds the plant's folders. */
 #include "plant/plant.h"
 
+#include <dirent.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -248,11 +249,11 @@ char *plant_service_folder(const char *path, const char *name)
     return folder;
 }
 
-/* Returns `folder` if it exists, or if the plant file does not belong to a systemd service. Otherwise returns that service's
+/* Returns `folder` if it is in use, or if the plant file does not belong to a systemd service. Otherwise returns that service's
    folder `name`. Takes ownership of `folder`. */
-static char *or_of_service(const struct plant *plant, char *folder, const char *name)
+static char *or_of_service(const struct plant *plant, char *folder, bool in_use, const char *name)
 {
-    char *own = access(folder, F_OK) == 0 ? NULL : plant_service_folder(plant->files.path, name);
+    char *own = in_use ? NULL : plant_service_folder(plant->files.path, name);
     if (!own)
         return folder;
     mem_free(folder);
@@ -261,12 +262,27 @@ static char *or_of_service(const struct plant *plant, char *folder, const char *
 
 char *plant_prepared_folder(const struct plant *plant)
 {
-    return or_of_service(plant, beside(plant, "prepared"), "prepared");
+    char *folder = beside(plant, "prepared");
+    return or_of_service(plant, folder, access(folder, F_OK) == 0, "prepared");
+}
+
+/* Returns whether a folder exists and has entries; true, too, if it exists but cannot be read. */
+static bool has_entries(const char *folder)
+{
+    DIR *dir = opendir(folder);
+    int count = 0;
+    if (!dir)
+        return access(folder, F_OK) == 0;
+    while (count <= 2 && readdir(dir)) /* `.` and `..` are entries of an empty folder */
+        count++;
+    closedir(dir);
+    return count > 2;
 }
 
 char *plant_recorded_folder(const struct plant *plant)
 {
-    return or_of_service(plant, plant_history_folder(plant), "history");
+    char *folder = plant_history_folder(plant);
+    return or_of_service(plant, folder, has_entries(folder), "history");
 }
 
 char *plant_history_folder(const struct plant *plant)

@@ -477,8 +477,8 @@ char *plant_service_folder(const char *path, const char *name);
 /* Returns the folder of the prepared asset files: FOLDER/NAME.prepared next to NAME.yaml, or the service's folder. Free with
    mem_free(). */
 char *plant_prepared_folder(const struct plant *plant);
-/* Returns the folder where a command reads and writes recorded readings: plant_history_folder() if it exists, otherwise the
-   systemd service's folder. Free with mem_free(). */
+/* Returns the folder where a command reads and writes recorded readings: plant_history_folder() if it has files, otherwise the
+   systemd service's folder. A daemon started by hand leaves an empty folder if it recorded nothing. Free with mem_free(). */
 char *plant_recorded_folder(const struct plant *plant);
 /* Returns the folder where the daemon records readings: FOLDER/NAME.history, unless the plant file names another. Free with mem_free(). */
 char *plant_history_folder(const struct plant *plant);

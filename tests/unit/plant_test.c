@@ -4,6 +4,7 @@
 
 #include "tests/support/test.h"
 #include <locale.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/text/text.h"
@@ -75,6 +76,19 @@ CASE(a_service_has_folders_of_its_own)
     prepared = plant_prepared_folder(&plant);
     assert_string_equal(prepared, "/etc/plantcast/none-here/other.prepared");
     mem_free(prepared);
+}
+
+CASE(an_empty_history_folder_does_not_hide_that_of_the_service)
+{
+    struct plant plant = { .files.folder = (char *)"/etc/plantcast/none-here",
+                           .files.path = (char *)"/etc/plantcast/none-here/plant.yaml",
+                           .history.folder = temp_path(f->folder, "own.history") };
+    assert_int_equal(mkdir(plant.history.folder, 0700), 0);
+    char *recorded = test_memory(plant_recorded_folder(&plant));
+    assert_string_equal(recorded, "/var/lib/plantcast/none-here/history");
+    temp_write_text(plant.history.folder, "views.json", "[]\n");
+    recorded = test_memory(plant_recorded_folder(&plant));
+    assert_string_equal(recorded, plant.history.folder);
 }
 
 CASE(everything_is_read)
