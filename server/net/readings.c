@@ -4,6 +4,9 @@
 #include "net/net_impl.h"
 #include "value/quality.h"
 
+/* time in nanoseconds for which clients are told that an entry is not recorded, after the error has ended */
+static const int64_t UNRECORDED_HOLD_NS = 10 * NS_PER_S;
+
 /* Returns when a reading changed. A reading that has just become stale (too old to be Good) counts as changed now, whenever it
    was received. */
 static int64_t changed_ns(const struct snapshot *snapshot, const struct reading *reading)
@@ -46,6 +49,22 @@ static unsigned find_unrecorded(const struct server_context *server)
            (unsigned)lists << UNRECORDED_LISTS;
 }
 
+/* Returns the entries to report as not recorded: those of find_unrecorded(), and those that it returned within the last
+   UNRECORDED_HOLD_NS. A reload replaces the historian and the alarm journal. The new ones know an error of the disk only after
+   their first write. The page's warning must not disappear meanwhile. */
+static unsigned hold_unrecorded(struct server_context *server, int64_t now_ns)
+{
+    unsigned unrecorded = find_unrecorded(server);
+    for (int i = 0; i < UNRECORDED_COUNT; i++) {
+        int64_t *at_ns = &server->readings.unrecorded_ns[i];
+        if (unrecorded & 1u << i)
+            *at_ns = now_ns;
+        else if (*at_ns && now_ns - *at_ns < UNRECORDED_HOLD_NS)
+            unrecorded |= 1u << i;
+    }
+    return unrecorded;
+}
+
 bool net_check_links(struct server_context *server)
 {
     bool changed = false, any = false;
@@ -63,7 +82,7 @@ bool net_check_links(struct server_context *server)
     struct clock_state clock = clock_state_read(), *known = &server->session_context.readings.clock;
     changed |= known->set != clock.set || known->leap_s != clock.leap_s || clock_state_error_ms(known) != clock_state_error_ms(&clock);
     *known = clock;
-    unsigned unrecorded = find_unrecorded(server);
+    unsigned unrecorded = hold_unrecorded(server, clock_mono_ns());
     changed |= server->session_context.unrecorded != unrecorded;
     server->session_context.unrecorded = unrecorded;
     counter_set(server->counters.clock_set, clock.set);

@@ -69,6 +69,8 @@ struct server_context {
         /* data_changed: readings have changed since streams and renderers were last informed; links_changed: the same for
            connections to data sources */
         bool data_changed, links_changed;
+        /* monotonic time when the daemon last did not record this kind of entry (enum unrecorded); 0: it always recorded it */
+        int64_t unrecorded_ns[UNRECORDED_COUNT];
     } readings;
     struct history_queries *history_queries; /* NULL: nothing is recorded */
     struct history_loader *history_loader;   /* service that loads the readings of past instants; NULL: nothing is recorded */
