@@ -234,7 +234,11 @@ static bool start_journal(struct alarm_service *service)
 {
     const struct alarm_service_params *params = &service->params;
     const struct journal_params journal = {
-        .log = params->log, .counters = params->counters, .folder = params->folder, .keep_days = params->keep_days
+        .log = params->log,
+        .counters = params->counters,
+        .folder = params->folder,
+        .keep_days = params->keep_days,
+        .reloads = params->before != NULL,
     };
     const struct instant now = { clock_mono_ns(), clock_utc_ns() };
     if (!params->folder)

@@ -286,8 +286,8 @@ static void restore(void *arg, const char *tag, const char *unit, const struct a
 }
 
 /* Restores the alarm states from the journal's file. Skips a damaged file, which the thread renames before it writes. Runs before
-   that thread starts. */
-static void restore_all(struct journal *journal, struct alarms *alarms, struct instant now)
+   that thread starts. reloads: as in struct journal_params. */
+static void restore_all(struct journal *journal, struct alarms *alarms, struct instant now, bool reloads)
 {
     struct restoring restoring = { alarms, now };
     int error;
@@ -298,7 +298,9 @@ static void restore_all(struct journal *journal, struct alarms *alarms, struct i
     if (!error)
         return;
     log_err(journal->log,
-            "alarms: the alarm journal in %s cannot be read (%s): acknowledged, shelved and suppressed alarms are not restored",
+            reloads
+                ? "alarms: the alarm journal in %s cannot be read (%s): alarms keep their states, but those of new tags are not restored"
+                : "alarms: the alarm journal in %s cannot be read (%s): acknowledged, shelved and suppressed alarms are not restored",
             journal->folder, database_error_text(error));
     if (error != -EBADMSG)
         set_error(journal, error);
@@ -324,7 +326,7 @@ struct journal *journal_start(const struct journal_params *params, struct alarms
     journal->folder = mem_strdup(params->folder);
     journal->keep_days = params->keep_days;
     add_counters(journal, params->counters);
-    restore_all(journal, alarms, now);
+    restore_all(journal, alarms, now, params->reloads);
     if (!thread_start(&journal->thread, params->log, "alarms: journal", journal_main, journal))
         journal_stop(&journal);
     return journal;

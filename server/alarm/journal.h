@@ -14,6 +14,7 @@ struct journal_params {
     struct counters *counters;
     const char *folder; /* folder of the journal, created if missing */
     double keep_days;
+    bool reloads; /* true: the caller copies the states of alarms that the plant had before a reload over the restored ones */
 };
 
 /* Opens the journal, restores the states of `alarms` from it, and starts the thread that writes the journal. A damaged file is

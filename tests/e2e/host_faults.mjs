@@ -2,7 +2,9 @@
 // Faults of a machine that runs for years: the volume of the history becomes read-only, and the daemon's certificate expires.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { copyFileSync, existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import {
+    appendFileSync, copyFileSync, existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync,
+} from 'node:fs';
 import { tmpdir } from 'node:os';
 import { basename, join } from 'node:path';
 import { after, test } from 'node:test';
@@ -154,6 +156,12 @@ test('log, /readyz and a metric name each other file that a newer version wrote 
         const client = await PlainClient.open(plant.port);
         await client.hello();
         assert.deepEqual((await client.text('status')).unrecorded, ['alarms', 'lists']);
+        appendFileSync(plant.file, '# a changed file\n');
+        plant.daemon.child.kill('SIGHUP');
+        await plant.daemon.line(/alarms: the alarm journal in \S+ cannot be read \(a newer Plantcast .*\): alarms keep their states, but /);
+        await plant.daemon.line(/reload: configuration \w+ replaced \w+ after/);
+        const statuses = client.texts.filter(({ type }) => type === 'status');
+        assert.deepEqual(statuses.filter(({ unrecorded }) => String(unrecorded) !== 'alarms,lists'), [], 'the warning stays');
         client.close();
         await withPage(`http://127.0.0.1:${plant.port}/`, DESKTOP, async (page) => {
             await waitForPicture(page);
