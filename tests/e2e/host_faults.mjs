@@ -167,6 +167,7 @@ test('log, /readyz and a metric name each other file that a newer version wrote 
             await waitForPicture(page);
             await page.waitForSelector('.unrecorded');
             assert.equal(await page.textContent('.unrecorded output'), 'Not recorded: alarm changes, views, notes and other lists');
+            assert.match(await page.getAttribute('.unrecorded', 'title'), /^Not recorded: alarm changes, .*\. The server cannot /);
             await shoot(page, 'unrecorded');
         });
         await plant.daemon.stop();

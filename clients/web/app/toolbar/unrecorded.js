@@ -6,13 +6,15 @@ import { byId, make, setText } from '../common/dom.js';
 export class Unrecorded {
     constructor() {
         this.names = make('output', {});
-        this.element = make('div', { class: 'cell late unrecorded', role: 'status', title: say('unrecorded.why') }, this.names);
+        this.element = make('div', { class: 'cell late unrecorded', role: 'status' }, this.names);
         byId('status').querySelector('.clock').after(this.element);
     }
 
     // unrecorded: names of what is not recorded, as in the server's message `status`; []: all is recorded.
     show(unrecorded) {
         this.element.hidden = unrecorded.length === 0;
-        setText(this.names, say('unrecorded.title', { what: unrecorded.map((name) => say(`unrecorded.${name}`)).join(', ') }));
+        const text = say('unrecorded.title', { what: unrecorded.map((name) => say(`unrecorded.${name}`)).join(', ') });
+        setText(this.names, text);
+        this.element.title = `${text}. ${say('unrecorded.why')}`; // a narrow status bar truncates the names
     }
 }
