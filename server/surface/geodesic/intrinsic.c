@@ -129,6 +129,7 @@ static void mollify(struct intrinsic *in)
     for (size_t t = 0; t < in->tri_count; t++)
         for (int i = 0; i < 3; i++)
             in->lengths[t][i] += lack;
+    in->lengthened_m = lack;
 }
 
 static void push(uint32_t **stack, size_t *depth, size_t *capacity, uint32_t side)

@@ -15,6 +15,8 @@ struct intrinsic {
      * could be flipped */
     uint32_t (*glue)[3];
     size_t flips;
+    /* length (m) by which all sides were made longer, so that no triangle is flat (intrinsic.c, mollify) */
+    double lengthened_m;
 };
 
 /* Builds the intrinsic Delaunay triangulation of a mesh by flipping edges. Finish with intrinsic_finish(). */

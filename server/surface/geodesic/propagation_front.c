@@ -22,10 +22,12 @@
 /* maximum number of triangles that a straight line from the source crosses; points beyond get their distance by propagation
    instead */
 #define MAX_DEPTH 32
-/* An intrinsic triangle contains the source if no barycentric weight is below -OUTSIDE, and the square of the source's distance from
-   its plane is less than OFF_PLANE, as a fraction of that of its longest side. */
+/* Limits for finding the intrinsic triangle that contains the source (lies_in()): barycentric weights are at least -OUTSIDE, the
+   source is off the triangle's plane by at most OFF_PLANE of its longest side, and its sides are as long as in space, except for
+   BENT of the longest side. */
 #define OUTSIDE 1e-3
-#define OFF_PLANE 1e-6
+#define OFF_PLANE 1e-5
+#define BENT 1e-4
 #define NO_LENGTH 1e-300 /* avoids division by 0 */
 /* A point whose neighbours already have offers is processed again if its distance falls by at least this fraction. Each smaller
    correction would spread over the whole surface. */
@@ -476,38 +478,69 @@ static bool lay_out_flipped(const struct propagation *propagation, const uint32_
     return false;
 }
 
-/* Unfolds the intrinsic triangle that contains the source into the plane, if all edges of the mesh triangle around the source were
-   flipped. Looks for it in space, among the intrinsic triangles that are flat there. Returns false if there is none. */
-static bool lay_out_in_space(const struct propagation *propagation, const double source[3], struct laid *laid)
+/* Returns whether an intrinsic triangle is flat in space and contains the source. parts: receives the source's barycentric weights;
+   off_m: its distance from the triangle's plane. */
+static bool lies_in(const struct propagation *propagation, uint32_t t, const double source[3], double parts[3], double *off_m)
 {
     const struct intrinsic *in = propagation->in;
-    const double(*points)[3] = (const double(*)[3])propagation->mesh->points;
-    double least2 = INFINITY;
-    for (uint32_t t = 0; t < in->tri_count; t++) {
-        const uint32_t *v = in->points[t];
-        const double *sides = in->lengths[t];
-        double x, y, from[3], longest_m = max_of(sides[0], max_of(sides[1], sides[2]));
-        if (vec_distance(source, points[v[0]]) > longest_m)
-            continue;
+    const double *sides = in->lengths[t], longest_m = max_of(sides[0], max_of(sides[1], sides[2]));
+    const double *corners[3];
+    double normal[3], to[3], turned[3];
+    for (int i = 0; i < 3; i++)
+        corners[i] = propagation->mesh->points[in->points[t][i]];
+    if (vec_distance(source, corners[0]) > longest_m)
+        return false;
+    for (int i = 0; i < 3; i++)
+        if (fabs(vec_distance(corners[i], corners[(i + 1) % 3]) - sides[i]) > BENT * longest_m + 4 * in->lengthened_m)
+            return false;
+    vec_normal(corners[0], corners[1], corners[2], normal);
+    double square = vec_dot(normal, normal);
+    if (!(square > 0))
+        return false;
+    vec_sub(source, corners[0], to);
+    *off_m = fabs(vec_dot(to, normal)) / sqrt(square);
+    for (int i = 0; i < 3; i++) {
+        vec_normal(source, corners[(i + 1) % 3], corners[(i + 2) % 3], turned);
+        parts[i] = vec_dot(turned, normal) / square;
+    }
+    return min_of(parts[0], min_of(parts[1], parts[2])) >= -OUTSIDE && *off_m <= OFF_PLANE * longest_m;
+}
+
+/* Unfolds the intrinsic triangle that contains the source into the plane, if all edges of the mesh triangle around the source were
+   flipped. Searches the source's patch from mesh triangle `tri` on, because another surface can be very close. Takes the triangle
+   whose plane is nearest. Returns false if there is none, or when out of memory. */
+static bool lay_out_in_space(const struct propagation *propagation, uint32_t tri, const double source[3], struct laid *laid)
+{
+    const struct intrinsic *in = propagation->in;
+    uint32_t *queue = mem_try_array(in->tri_count, sizeof(*queue));
+    uint8_t *seen = mem_try_array(in->tri_count, 1);
+    double least_m = INFINITY;
+    size_t count = 0;
+    if (queue && seen) {
+        queue[count++] = tri;
+        seen[tri] = 1;
+    }
+    for (size_t at = 0; at < count; at++) {
+        uint32_t t = queue[at];
+        double parts[3], off_m, x, y, sum = 0;
         for (int i = 0; i < 3; i++)
-            from[i] = vec_distance(source, points[v[i]]);
-        /* the triangle's corners are (0, 0), (sides[0], 0) and (x, y) */
-        intrinsic_layout(sides, &x, &y);
-        double at_x = (from[0] * from[0] - from[1] * from[1] + sides[0] * sides[0]) / (2 * sides[0]);
-        double at_y = ((from[0] * from[0] - from[2] * from[2] + sides[2] * sides[2]) / 2 - at_x * x) / y;
-        double off2 = fabs(from[0] * from[0] - at_x * at_x - at_y * at_y) / (longest_m * longest_m);
-        double parts[3] = { 0, (at_x - x * at_y / y) / sides[0], at_y / y }, sum = 0;
-        parts[0] = 1 - parts[1] - parts[2];
-        if (!(min_of(parts[0], min_of(parts[1], parts[2])) > -OUTSIDE && off2 < min_of(least2, OFF_PLANE)))
+            if (in->glue[t][i] != TRIMESH_NONE && !seen[in->glue[t][i] / 3]) {
+                seen[in->glue[t][i] / 3] = 1;
+                queue[count++] = in->glue[t][i] / 3;
+            }
+        if (!lies_in(propagation, t, source, parts, &off_m) || off_m >= least_m)
             continue;
-        least2 = off2;
+        least_m = off_m;
         for (int i = 0; i < 3; i++)
             sum += parts[i] = max_of(parts[i], MIN_WEIGHT);
-        at_x = (parts[1] * sides[0] + parts[2] * x) / sum;
-        at_y = parts[2] * y / sum;
-        *laid = (struct laid){ t, { { -at_x, -at_y }, { sides[0] - at_x, -at_y }, { x - at_x, y - at_y } } };
+        /* the triangle's corners are (0, 0), (length of side 0, 0) and (x, y) */
+        intrinsic_layout(in->lengths[t], &x, &y);
+        double side = in->lengths[t][0], at_x = (parts[1] * side + parts[2] * x) / sum, at_y = parts[2] * y / sum;
+        *laid = (struct laid){ t, { { -at_x, -at_y }, { side - at_x, -at_y }, { x - at_x, y - at_y } } };
     }
-    return least2 < INFINITY;
+    mem_free(queue);
+    mem_free(seen);
+    return least_m < INFINITY;
 }
 
 /* Sets the exact distances of points near the source that a straight line on the unfolded surface reaches. Propagation alone
@@ -527,7 +560,7 @@ static void look_around(const struct propagation *propagation, struct propagatio
         for (int axis = 0; axis < 3; axis++)
             source[axis] += inside[i] * propagation->mesh->points[given[i]][axis];
     if (!lay_out_kept(in, given, tri, inside, &laid) && !lay_out_flipped(propagation, given, source, &laid) &&
-        !lay_out_in_space(propagation, source, &laid))
+        !lay_out_in_space(propagation, tri, source, &laid))
         return;
     for (int i = 0; i < 3; i++) {
         struct window window = { .entered = in->glue[laid.tri][i] };
