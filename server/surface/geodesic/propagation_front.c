@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Computes distances by propagation from a source outwards, nearest points first. */
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -24,10 +25,12 @@
 #define MAX_DEPTH 32
 /* Limits for finding the intrinsic triangle that contains the source (lies_in()): barycentric weights are at least -OUTSIDE, the
    source is off the triangle's plane by at most OFF_PLANE of its longest side, and its sides are as long as in space, except for
-   BENT of the longest side. */
+   BENT of the longest side. Besides, coordinates are rounded to ROUNDING of the greatest one, because models have single
+   precision. */
 #define OUTSIDE 1e-3
 #define OFF_PLANE 1e-5
 #define BENT 1e-4
+#define ROUNDING (4 * (double)FLT_EPSILON)
 #define NO_LENGTH 1e-300 /* avoids division by 0 */
 /* A point whose neighbours already have offers is processed again if its distance falls by at least this fraction. Each smaller
    correction would spread over the whole surface. */
@@ -485,13 +488,15 @@ static bool lies_in(const struct propagation *propagation, uint32_t t, const dou
     const struct intrinsic *in = propagation->in;
     const double *sides = in->lengths[t], longest_m = max_of(sides[0], max_of(sides[1], sides[2]));
     const double *corners[3];
-    double normal[3], to[3], turned[3];
-    for (int i = 0; i < 3; i++)
+    double normal[3], to[3], turned[3], rounding_m = 0;
+    for (int i = 0; i < 3; i++) {
         corners[i] = propagation->mesh->points[in->points[t][i]];
+        rounding_m = max_of(rounding_m, ROUNDING * fabs(source[i]));
+    }
     if (vec_distance(source, corners[0]) > longest_m)
         return false;
     for (int i = 0; i < 3; i++)
-        if (fabs(vec_distance(corners[i], corners[(i + 1) % 3]) - sides[i]) > BENT * longest_m + 4 * in->lengthened_m)
+        if (fabs(vec_distance(corners[i], corners[(i + 1) % 3]) - sides[i]) > BENT * longest_m + 4 * in->lengthened_m + rounding_m)
             return false;
     vec_normal(corners[0], corners[1], corners[2], normal);
     double square = vec_dot(normal, normal);
@@ -503,7 +508,7 @@ static bool lies_in(const struct propagation *propagation, uint32_t t, const dou
         vec_normal(source, corners[(i + 1) % 3], corners[(i + 2) % 3], turned);
         parts[i] = vec_dot(turned, normal) / square;
     }
-    return min_of(parts[0], min_of(parts[1], parts[2])) >= -OUTSIDE && *off_m <= OFF_PLANE * longest_m;
+    return min_of(parts[0], min_of(parts[1], parts[2])) >= -OUTSIDE && *off_m <= OFF_PLANE * longest_m + rounding_m;
 }
 
 /* Unfolds the intrinsic triangle that contains the source into the plane, if all edges of the mesh triangle around the source were
