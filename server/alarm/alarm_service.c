@@ -45,6 +45,7 @@ struct alarm_service {
     int raised_now;
     struct journal_entry *rows; /* ring buffer of the newest journal rows; NULL: there is no journal */
     uint64_t row_count;         /* number of journal rows since the start, including those overwritten in the ring buffer */
+    int last_error;             /* journal_error() of the journal when it was closed */
     bool ending, lost;          /* ending: the journal is being closed; lost: it was closed before all rows were on disk */
     void (*changed)(void *arg); /* function that is called after alarms have changed; NULL: none */
     void *changed_arg;
@@ -239,6 +240,7 @@ static bool start_journal(struct alarm_service *service)
         .folder = params->folder,
         .keep_days = params->keep_days,
         .reloads = params->before != NULL,
+        .error_before = params->before ? alarm_service_journal_error(params->before) : 0,
     };
     const struct instant now = { clock_mono_ns(), clock_utc_ns() };
     if (!params->folder)
@@ -284,6 +286,7 @@ void alarm_service_halt(struct alarm_service *service)
     pthread_mutex_lock(&service->thread.lock);
     struct journal *journal = service->journal;
     service->journal = NULL;
+    service->last_error = journal ? journal_error(journal) : 0;
     service->ending = journal != NULL;
     pthread_mutex_unlock(&service->thread.lock);
     bool all_written = journal_stop(&journal);
@@ -391,7 +394,7 @@ int alarm_service_settled(struct alarm_service *service, const struct settling_t
 int alarm_service_journal_error(struct alarm_service *service)
 {
     pthread_mutex_lock(&service->thread.lock);
-    int error = service->journal ? journal_error(service->journal) : 0;
+    int error = service->journal ? journal_error(service->journal) : service->last_error;
     pthread_mutex_unlock(&service->thread.lock);
     return error;
 }

@@ -62,8 +62,8 @@ static int write_taken(struct journal *journal, int64_t mono_ns)
         journal->taken.count = 0;
     }
     if (!error && (!journal->forgot_ns || mono_ns - journal->forgot_ns >= FORGET_NS)) {
-        journal->forgot_ns = mono_ns;
         error = journal_file_forget(journal->file, clock_utc_ns() / 1000 - (int64_t)(journal->keep_days * (double)US_PER_DAY));
+        journal->forgot_ns = error ? 0 : mono_ns;
     }
     if (error) /* closes the file after an error, so that reopening it before the next write detects damage */
         journal_file_close(&journal->file);
@@ -298,9 +298,9 @@ static void restore_all(struct journal *journal, struct alarms *alarms, struct i
     if (!error)
         return;
     log_err(journal->log,
-            reloads
-                ? "alarms: the alarm journal in %s cannot be read (%s): alarms keep their states, but those of new tags are not restored"
-                : "alarms: the alarm journal in %s cannot be read (%s): acknowledged, shelved and suppressed alarms are not restored",
+            reloads ? "alarms: the alarm journal in %s cannot be read (%s): alarms keep their states, but the states of new tags' alarms "
+                      "are not restored"
+                    : "alarms: the alarm journal in %s cannot be read (%s): acknowledged, shelved and suppressed alarms are not restored",
             journal->folder, database_error_text(error));
     if (error != -EBADMSG)
         set_error(journal, error);
@@ -327,6 +327,8 @@ struct journal *journal_start(const struct journal_params *params, struct alarms
     journal->keep_days = params->keep_days;
     add_counters(journal, params->counters);
     restore_all(journal, alarms, now, params->reloads);
+    if (!journal->failing && params->error_before)
+        set_error(journal, params->error_before);
     if (!thread_start(&journal->thread, params->log, "alarms: journal", journal_main, journal))
         journal_stop(&journal);
     return journal;

@@ -15,6 +15,7 @@ struct journal_params {
     const char *folder; /* folder of the journal, created if missing */
     double keep_days;
     bool reloads; /* true: the caller copies the states of alarms that the plant had before a reload over the restored ones */
+    int error_before; /* last journal_error() of the journal that this one replaces; holds until the file is written. 0: none */
 };
 
 /* Opens the journal, restores the states of `alarms` from it, and starts the thread that writes the journal. A damaged file is

@@ -180,6 +180,12 @@ static int write_state(struct journal_file *file, const struct journal_entry *en
 int journal_file_write(struct journal_file *file, const struct journal_entry *entries, size_t count)
 {
     int code = sqlite3_exec(file->db.handle, "BEGIN IMMEDIATE", NULL, NULL, NULL);
+    if (!count && code == SQLITE_OK) {
+        /* writes a page, because a transaction without changes succeeds even on a full disk */
+        char *stamp = mem_printf("PRAGMA user_version = %d", file->db.format->version);
+        code = sqlite3_exec(file->db.handle, stamp, NULL, NULL, NULL);
+        mem_free(stamp);
+    }
     for (size_t i = 0; i < count && code == SQLITE_OK; i++) {
         if (entries[i].changed)
             code = write_event(file, &entries[i]);

@@ -290,6 +290,28 @@ CASE(a_journal_that_failed_is_tried_again_without_alarms)
     alarms_destroy(&alarms);
 }
 
+/* A reload replaces a journal that could not be written. The new one can read the file, or finds none, and has no rows to write. */
+CASE(a_new_journal_keeps_the_error_of_the_old_one_until_it_writes)
+{
+    const struct alarms_listener listener = { 0 };
+    const struct journal_params params = {
+        .log = s->log, .counters = s->counters, .folder = s->folder, .keep_days = 400, .error_before = -ENOSPC
+    };
+    struct alarms *alarms = alarms_create(s->plant, &listener);
+    char *blocked = test_printf("%s/" JOURNAL_FILE "-wal", s->folder);
+    assert_int_equal(mkdir(blocked, 0755), 0);
+    struct journal *journal = journal_start(&params, alarms, (struct instant){ clock_mono_ns(), clock_utc_ns() });
+    assert_int_not_equal(journal_error(journal), 0);
+    assert_int_equal((int)counted(s, "plantcast_alarm_journal_good"), 0);
+    assert_int_equal(rmdir(blocked), 0);
+    for (int i = 0; journal_error(journal) && i < 3000; i++)
+        sleep_ns(10000000);
+    assert_int_equal(journal_error(journal), 0);
+    assert_int_equal((int)counted(s, "plantcast_alarm_journal_good"), 1);
+    assert_true(journal_stop(&journal));
+    alarms_destroy(&alarms);
+}
+
 static void mirror(void *arg, const struct journal_entry *row)
 {
     alarm_service_mirror_row(arg, row);

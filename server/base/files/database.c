@@ -190,12 +190,14 @@ static int open_to_write(struct database *database, int *version)
     /* synchronous = FULL: committed transactions survive a power failure */
     static const char set_up[] = "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL";
     int code = open_handle(database, database->path, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
+    if (code == SQLITE_OK)
+        code = read_version(database, version);
+    if (code == SQLITE_OK && *version > database->format->version)
+        return SQLITE_OK;  /* the file of a newer version is not changed, not even by the pragmas below */
     if (code == SQLITE_OK) /* the format's pragmas must run first: some have an effect only on a file without pages */
         code = sqlite3_exec(database->handle, database->format->set_up, NULL, NULL, NULL);
     if (code == SQLITE_OK)
         code = sqlite3_exec(database->handle, set_up, NULL, NULL, NULL);
-    if (code == SQLITE_OK)
-        code = read_version(database, version);
     return code == SQLITE_OK && *version < database->format->version ? migrate(database, *version) : code;
 }
 
