@@ -35,7 +35,7 @@ static const char *why(char out[200])
     if (ERR_SYSTEM_ERROR(code))
         snprintf(out, 200, "%s", strerror(ERR_GET_REASON(code)));
     else if ((ERR_GET_LIB(code) == ERR_LIB_PEM && ERR_GET_REASON(code) == PEM_R_NO_START_LINE) || ERR_GET_LIB(code) == ERR_LIB_OSSL_DECODER)
-        snprintf(out, 200, "the file contains no certificate, or no private key, in PEM format");
+        snprintf(out, 200, "the file contains no certificate, or no private key, that OpenSSL can read, in PEM format");
     else if ((ERR_GET_LIB(code) == ERR_LIB_X509 && ERR_GET_REASON(code) == X509_R_KEY_VALUES_MISMATCH) ||
              (ERR_GET_LIB(code) == ERR_LIB_SSL && ERR_GET_REASON(code) == SSL_R_NO_CERTIFICATE_ASSIGNED))
         snprintf(out, 200, "this private key does not belong to the certificate");

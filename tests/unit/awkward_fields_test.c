@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Models and sensors that are difficult for the field, prepared by plantcast-prep. For any readings, the finest level must be
    within one colour step (1/255 of the range), or the report must name the asset and its error. All shapes are plates, whose
-   exact values have a formula. Plates and points are random, by default from one seed. Of the 19 seeds from 10 to 26, 61 and 62,
-   two exceed a limit in full runs: 24 by 0.4 steps, 25 by 1.4 steps with a power of 16. */
+   exact values have a formula. Plates and points are random, by default from one seed. tests/bench/notes/awkward.md names seeds
+   that exceed a limit. */
 #include "tests/support/test.h"
 #include <jansson.h>
 

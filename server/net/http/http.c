@@ -228,7 +228,7 @@ static int refuse_method(const struct server_context *server, struct http_exchan
 }
 
 /* Returns the number of bytes of the body that a request announces; INT64_MAX: not known. libwebsockets reads a body without
-   Content-Length only for POST, PUT and PATCH; for other methods nobody would read it, and its end would never come. */
+   Content-Length only for POST, PUT and PATCH. With other methods it reads no such body, so it never reports the body's end. */
 static int64_t announced_bytes(struct lws *wsi)
 {
     char length[32];

@@ -13,11 +13,11 @@ void main() {
     gl_Position = warp * vec4(vertex.xyz, 1.0);
 }`;
 // Draws the picture on its depth mesh. Interpolates between neighbouring pixels of the picture, but only if their colours are
-// alike and they lie on the same side of a step in depth: users would read a mixture of two colours as the value between them.
-// With the product's colour maps, the limits below keep the value of a mixture within 4.3 % of the range from one of its
-// pixels. Where the picture's depth has a step, edge pixels of the farther surface contain a part of the nearer surface's
-// colour. They become grey, for the same reason. LIKE_HUE, LIKE: greatest differences between pixels that are mixed; LIKE_HUE: of
-// red - green and of green - blue; LIKE: of red, green and blue.
+// alike, because users would read a mixture of two colours as the value between them. For two colours of one of the product's
+// maps, the limits keep the mixture's value within 4.3 % of the range from one of the two values. LIKE_HUE: largest difference
+// of red - green, and of green - blue; LIKE: largest difference of red, green or blue. If a step in depth divides a cell, pixels
+// of its two sides are not mixed, and edge pixels of the farther surface, which contain a part of the nearer surface's colour,
+// become grey.
 export const PICTURE = `#version 300 es
 precision highp float;
 in vec2 at;
