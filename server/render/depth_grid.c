@@ -100,11 +100,6 @@ static inline float ground_at(const struct depth_lens *lens, double x, double y)
 
 /* --- codes ------------------------------------------------------------------------------------------------------------------- */
 
-struct divided_cell { /* cell that contains a depth step */
-    uint32_t index;
-    uint16_t row, column;
-};
-
 struct coder {
     const struct depth_cell *cells;
     const struct depth_lens *lens;
@@ -113,7 +108,7 @@ struct coder {
     float *nears, *fars;
     uint16_t *near, *far;         /* depth codes */
     uint16_t *symbols;            /* differences of a row of codes from their predictions */
-    struct divided_cell *divided; /* row by row */
+    uint32_t *divided;            /* indices of the cells that contain a depth step, in ascending order */
     uint16_t *masks;              /* coarse masks of divided cells, at the index of the cell */
     size_t divided_count;
     uint8_t *data;
@@ -227,14 +222,14 @@ static void find_codes(struct coder *coder)
     quantise(coder, coder->nears, coder->near);
     quantise(coder, coder->fars, coder->far);
     /* without a branch for each cell, because processors predict badly which cells are divided */
-    size_t i = 0, count = 0;
-    for (int row = 0; row < coder->rows; row++)
-        for (int column = 0; column < coder->columns; column++, i++) {
-            coder->divided[count] = (struct divided_cell){ (uint32_t)i, (uint16_t)row, (uint16_t)column };
-            count += coder->near[i] != coder->far[i];
-        }
+    const uint32_t cells = (uint32_t)coder->columns * (uint32_t)coder->rows;
+    size_t count = 0;
+    for (uint32_t i = 0; i < cells; i++) {
+        coder->divided[count] = i;
+        count += coder->near[i] != coder->far[i];
+    }
     for (size_t d = 0; d < count; d++) {
-        i = coder->divided[d].index;
+        uint32_t i = coder->divided[d];
         uint64_t mask = coder->cells[i].mask;
         bool swapped = coder->nears[i] != coder->cells[i].near;
         coder->masks[i] = (uint16_t)coarse_mask(swapped ? ~mask : mask);
@@ -268,7 +263,7 @@ static uint8_t *put_divided(const struct coder *coder, uint8_t *out)
     size_t count = (size_t)coder->columns * (size_t)coder->rows, bytes = (count + 7) / 8;
     memset(out, 0, bytes);
     for (size_t d = 0; d < coder->divided_count; d++)
-        out[coder->divided[d].index / 8] |= (uint8_t)(1 << coder->divided[d].index % 8);
+        out[coder->divided[d] / 8] |= (uint8_t)(1 << coder->divided[d] % 8);
     return out + bytes;
 }
 
@@ -305,14 +300,13 @@ static uint8_t *put_back(const struct coder *coder, uint8_t *out)
    the left, upper and upper left neighbours' near codes that is nearer than the cell's far side. */
 static uint8_t *put_near(const struct coder *coder, uint8_t *out)
 {
-    size_t columns = (size_t)coder->columns;
+    const uint32_t columns = (uint32_t)coder->columns;
     const uint16_t *near = coder->near;
     for (size_t d = 0; d < coder->divided_count; d++) {
-        const struct divided_cell *cell = &coder->divided[d];
-        size_t i = cell->index;
+        const uint32_t i = coder->divided[d], column = i % columns;
         int back = coder->far[i];
-        int left = cell->column ? near[i - 1] : 0, up = cell->row ? near[i - columns] : 0;
-        int corner = cell->column && cell->row ? near[i - columns - 1] : 0;
+        int left = column ? near[i - 1] : 0, up = i >= columns ? near[i - columns] : 0;
+        int corner = column && i >= columns ? near[i - columns - 1] : 0;
         int predicted = left > back ? left : up > back ? up : corner > back ? corner : back;
         out = put_symbol(out, symbol_of(near[i], predicted), near[i]);
     }
@@ -333,12 +327,11 @@ static unsigned mask_beside(const struct coder *coder, size_t neighbour, size_t 
    prediction is their value. Otherwise it is the inverse of the upper left bit, so that an edge continues straight. */
 static uint8_t *put_masks(const struct coder *coder, uint8_t *out)
 {
-    size_t columns = (size_t)coder->columns;
+    const uint32_t columns = (uint32_t)coder->columns;
     for (size_t d = 0; d < coder->divided_count; d++) {
-        const struct divided_cell *cell = &coder->divided[d];
-        size_t i = cell->index;
+        const uint32_t i = coder->divided[d];
         unsigned mask = coder->masks[i];
-        unsigned west = cell->column ? mask_beside(coder, i - 1, i) : 0, north = cell->row ? mask_beside(coder, i - columns, i) : 0;
+        unsigned west = i % columns ? mask_beside(coder, i - 1, i) : 0, north = i >= columns ? mask_beside(coder, i - columns, i) : 0;
         unsigned left = (mask << 1 & 0xeeee) | (west >> 3 & 0x1111), up = (mask << 4 & 0xfff0) | north >> 12;
         unsigned between = (left << 4 & 0xfff0) | (north >> 11 & 0xe) | (west >> 3 & 1);
         unsigned differs = mask ^ ((left & up) | ((left ^ up) & ~between));
