@@ -2,6 +2,7 @@
 /* The event loop's snapshot of the readings, and the state of the connections to their sources. */
 #include "base/clock.h"
 #include "net/net_impl.h"
+#include "net/unread_files.h"
 #include "value/quality.h"
 
 /* time in nanoseconds for which clients are told that an entry is not recorded, after the error has ended */
@@ -38,10 +39,8 @@ bool net_take_snapshot(struct server_context *server)
 static unsigned find_unrecorded(const struct server_context *server)
 {
     const struct plant_services *plant = &server->params.plant;
-    bool lists = (plant->named_views && named_views_unread_file(plant->named_views)) || (plant->notes && notes_unread_file(plant->notes)) ||
-                 (plant->short_links && short_links_unread_file(plant->short_links)) ||
-                 (plant->wall_remote && wall_remote_unread_file(plant->wall_remote)) ||
-                 (plant->pairings && pairings_unread_file(plant->pairings));
+    const char *names[UNREAD_FILES];
+    bool lists = unread_files(plant, names) > 0;
     bool readings = plant->historian && historian_error(plant->historian);
     bool alarms = plant->alarm_service && alarm_service_journal_error(plant->alarm_service);
     bool actions = audit_error(server->params.audit);
@@ -50,8 +49,8 @@ static unsigned find_unrecorded(const struct server_context *server)
 }
 
 /* Returns the entries to report as not recorded: those of find_unrecorded(), and those that it returned within the last
-   UNRECORDED_HOLD_NS. A reload replaces the historian and the alarm journal. The new ones know an error of the disk only after
-   their first write. The page's warning must not disappear meanwhile. */
+   UNRECORDED_HOLD_NS. A reload replaces the historian, and the new one knows an error of the disk only after its first write. The
+   page's warning must not disappear meanwhile. */
 static unsigned hold_unrecorded(struct server_context *server, int64_t now_ns)
 {
     unsigned unrecorded = find_unrecorded(server);

@@ -9,6 +9,7 @@
 #include "net/core_end.h"
 #include "net/http/http_impl.h"
 #include "net/renderers.h"
+#include "net/unread_files.h"
 
 /* Returns whether the request is a load balancer's check whether the daemon may draw for a core (/readyz?role=render). */
 static bool is_asked_as_renderer(struct http_exchange *request)
@@ -44,18 +45,11 @@ static void add_unrecorded(struct text *text, const char *what, const char *file
 /* Appends the names of the files with users' entries that could not be read. */
 static void add_unread(struct text *text, const struct plant_services *plant)
 {
-    const char *const files[] = { plant->named_views ? named_views_unread_file(plant->named_views) : NULL,
-                                  plant->notes ? notes_unread_file(plant->notes) : NULL,
-                                  plant->short_links ? short_links_unread_file(plant->short_links) : NULL,
-                                  plant->wall_remote ? wall_remote_unread_file(plant->wall_remote) : NULL,
-                                  plant->pairings ? pairings_unread_file(plant->pairings) : NULL };
-    bool any = false;
-    for (size_t i = 0; i < sizeof(files) / sizeof(files[0]); i++)
-        if (files[i]) {
-            text_add(text, "%s%s", any ? ", " : "; these files are not used, because they cannot be read: ", files[i]);
-            any = true;
-        }
-    text_add(text, "%s", any ? ": the log says why" : "");
+    const char *names[UNREAD_FILES];
+    int count = unread_files(plant, names);
+    for (int i = 0; i < count; i++)
+        text_add(text, "%s%s", i > 0 ? ", " : "; these files are not used, because they cannot be read: ", names[i]);
+    text_add(text, "%s", count > 0 ? ": the log says why" : "");
 }
 
 /* Answers 200, even if files cannot be used: a load balancer must not take pictures from users for that reason. */
