@@ -270,38 +270,18 @@ CASE(a_damaged_journal_is_set_aside)
     assert_int_equal(read_rows(s, NULL, 100000, INT64_MAX).count, TAGS);
 }
 
-/* The journal cannot be read when the daemon starts, and can be used a moment later. No alarm changes meanwhile. */
-CASE(a_journal_that_failed_is_tried_again_without_alarms)
-{
-    const struct alarms_listener listener = { 0 };
-    const struct journal_params params = { .log = s->log, .counters = s->counters, .folder = s->folder, .keep_days = 400 };
-    struct alarms *alarms = alarms_create(s->plant, &listener);
-    char *blocked = test_printf("%s/" JOURNAL_FILE, s->folder);
-    assert_int_equal(mkdir(blocked, 0755), 0);
-    struct journal *journal = journal_start(&params, alarms, (struct instant){ clock_mono_ns(), clock_utc_ns() });
-    assert_int_equal(journal_error(journal), -EISDIR);
-    assert_int_equal((int)counted(s, "plantcast_alarm_journal_good"), 0);
-    assert_int_equal(rmdir(blocked), 0);
-    for (int i = 0; journal_error(journal) && i < 3000; i++)
-        sleep_ns(10000000);
-    assert_int_equal(journal_error(journal), 0);
-    assert_int_equal((int)counted(s, "plantcast_alarm_journal_good"), 1);
-    assert_true(journal_stop(&journal));
-    alarms_destroy(&alarms);
-}
-
-/* A reload replaces a journal that could not be written. The new one can read the file, or finds none, and has no rows to write. */
-CASE(a_new_journal_keeps_the_error_of_the_old_one_until_it_writes)
+/* Starts a journal while the folder `blocked` has the name of one of its files, and returns its error. Then removes the folder, and
+   waits until the journal works, although no alarm changes. */
+static int error_while_blocked(struct alarm_service_setup *s, const char *blocked, int error_before)
 {
     const struct alarms_listener listener = { 0 };
     const struct journal_params params = {
-        .log = s->log, .counters = s->counters, .folder = s->folder, .keep_days = 400, .error_before = -ENOSPC
+        .log = s->log, .counters = s->counters, .folder = s->folder, .keep_days = 400, .error_before = error_before
     };
     struct alarms *alarms = alarms_create(s->plant, &listener);
-    char *blocked = test_printf("%s/" JOURNAL_FILE "-wal", s->folder);
     assert_int_equal(mkdir(blocked, 0755), 0);
     struct journal *journal = journal_start(&params, alarms, (struct instant){ clock_mono_ns(), clock_utc_ns() });
-    assert_int_not_equal(journal_error(journal), 0);
+    int error = journal_error(journal);
     assert_int_equal((int)counted(s, "plantcast_alarm_journal_good"), 0);
     assert_int_equal(rmdir(blocked), 0);
     for (int i = 0; journal_error(journal) && i < 3000; i++)
@@ -310,6 +290,19 @@ CASE(a_new_journal_keeps_the_error_of_the_old_one_until_it_writes)
     assert_int_equal((int)counted(s, "plantcast_alarm_journal_good"), 1);
     assert_true(journal_stop(&journal));
     alarms_destroy(&alarms);
+    return error;
+}
+
+/* The journal cannot be read when the daemon starts, and can be used a moment later. */
+CASE(a_journal_that_failed_is_tried_again_without_alarms)
+{
+    assert_int_equal(error_while_blocked(s, test_printf("%s/" JOURNAL_FILE, s->folder), 0), -EISDIR);
+}
+
+/* A reload replaces a journal that could not be written. The new one finds no file, and has no rows to write. */
+CASE(a_new_journal_keeps_the_error_of_the_old_one_until_it_writes)
+{
+    assert_int_not_equal(error_while_blocked(s, test_printf("%s/" JOURNAL_FILE "-wal", s->folder), -ENOSPC), 0);
 }
 
 static void mirror(void *arg, const struct journal_entry *row)

@@ -17,7 +17,7 @@ char *reply_following_text(const struct session *session);
 /* Lists all readings or, if `all` is false, only those that the client does not have yet (reading.changes differs from `sent`,
    an array by tag). Updates `sent`. */
 char *reply_tags_text(const struct plant *plant, const struct snapshot *snapshot, uint32_t *sent, bool all);
-/* Engineers also get the state of the standby, if this core leads one; they and operators get what is not recorded. */
+/* role: operators and engineers also get what is not recorded, and engineers the state of the standby, if this core leads one. */
 char *reply_status_text(const struct session_context *context, enum role role, int64_t now_utc_ns);
 char *reply_pong_text(const struct snapshot *snapshot, double t, int64_t now_utc_ns);
 char *reply_time_text(const struct session *session);

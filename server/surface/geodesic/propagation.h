@@ -52,7 +52,7 @@ struct propagation_front {
     float *bend_m;
     /* by point: straight-line distance in metres from the source of the propagation, a lower bound of the geodesic distance */
     float *straight_m;
-    char *state; /* by point: whether it was processed */
+    char *state; /* by point: WAITING, SETTLED or CORRECTED (propagation_front.c) */
     uint32_t *buckets;
     struct propagation_item {
         uint32_t point, next;
