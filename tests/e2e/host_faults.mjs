@@ -168,6 +168,10 @@ test('log, /readyz and a metric name each other file that a newer version wrote 
             await page.waitForSelector('.unrecorded');
             assert.equal(await page.textContent('.unrecorded output'), 'Not recorded: alarm changes, views, notes and other lists');
             assert.match(await page.getAttribute('.unrecorded', 'title'), /^Not recorded: alarm changes, .*\. The server cannot /);
+            assert.ok(await page.evaluate(() => {
+                const output = document.querySelector('.unrecorded output');
+                return output.scrollWidth <= output.clientWidth;
+            }), 'no name is truncated');
             await shoot(page, 'unrecorded');
         });
         await plant.daemon.stop();
