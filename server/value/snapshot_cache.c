@@ -95,8 +95,9 @@ static void number_changes(struct snapshot *snapshot)
         struct reading *reading = &snapshot->readings[i];
         struct {
             double value;
+            int64_t age_ns; /* differs between instants even if value and quality are equal */
             uint32_t quality, alarm;
-        } what = { reading->value, reading->quality, 0 };
+        } what = { reading->value, reading->age_ns, reading->quality, 0 };
         what.alarm = (uint32_t)reading->alarm << 8 | reading->alarm_status;
         reading->changes = (uint32_t)XXH3_64bits(&what, sizeof(what));
     }

@@ -20,8 +20,8 @@ struct snapshot_cache *snapshot_cache_create(void);
 void snapshot_cache_destroy(struct snapshot_cache **snapshot_cache);
 
 /* Adds the snapshot of a past time and takes ownership of its readings, which leaves `snapshot` empty; the caller still frees the
-   struct. Sets `changes` of the readings so that equal values and qualities have equal numbers. If the cache already has the time,
-   changes nothing, and the caller keeps the readings. */
+   struct. Sets `changes` of the readings so that readings with equal values, qualities, alarms and ages have equal numbers. If the
+   cache already has the time, changes nothing, and the caller keeps the readings. */
 void snapshot_cache_add(struct snapshot_cache *snapshot_cache, int64_t at_us, struct snapshot *snapshot);
 /* Returns the snapshot of a past time, valid until snapshot_cache_give(); NULL if the cache does not have it. */
 const struct historical_snapshot *snapshot_cache_take(struct snapshot_cache *snapshot_cache, int64_t at_us);

@@ -5,6 +5,9 @@
 
 #include "tests/support/test.h"
 
+#include "base/clock.h"
+#include "value/quality.h"
+
 static void add(struct snapshot_cache *snapshot_cache, int64_t at_us, double value)
 {
     struct snapshot *snapshot = test_snapshot(2);
@@ -42,6 +45,23 @@ TEST(test_changes_tell_values_and_qualities_apart)
     assert_int_equal(at[1]->snapshot.readings[0].changes, same);
     assert_int_not_equal(at[2]->snapshot.readings[0].changes, same);
     assert_int_not_equal(at[0]->snapshot.readings[1].changes, same); /* bad, and 0 */
+    for (int i = 0; i < 3; i++)
+        snapshot_cache_give(snapshot_cache, &at[i]);
+    snapshot_cache_destroy(&snapshot_cache);
+}
+
+TEST(test_changes_tell_ages_apart)
+{
+    struct snapshot_cache *snapshot_cache = snapshot_cache_create();
+    const struct historical_snapshot *at[3];
+    for (int i = 0; i < 3; i++) { /* tag 0: 5, 5 and 65 s since its last usable value */
+        struct snapshot *snapshot = test_snapshot(1);
+        snapshot->readings[0] = (struct reading){ .quality = QUALITY_BAD_COMMUNICATION_ERROR, .age_ns = (i < 2 ? 5 : 65) * NS_PER_S };
+        snapshot_cache_add(snapshot_cache, i + 1, snapshot);
+        at[i] = snapshot_cache_take(snapshot_cache, i + 1);
+    }
+    assert_int_equal(at[1]->snapshot.readings[0].changes, at[0]->snapshot.readings[0].changes);
+    assert_int_not_equal(at[2]->snapshot.readings[0].changes, at[0]->snapshot.readings[0].changes);
     for (int i = 0; i < 3; i++)
         snapshot_cache_give(snapshot_cache, &at[i]);
     snapshot_cache_destroy(&snapshot_cache);
