@@ -5,10 +5,14 @@
 
 #include "tests/support/test.h"
 
+#include <time.h>
+
+#include "base/clock.h"
 #include "render/overlay/overlay_pen.h"
 #include "render/overlay/overlay_words.h"
 #include "tests/support/toy.h"
 #include "value/alarm.h"
+#include "value/quality.h"
 
 enum { WIDTH = 1280, HEIGHT = 720 };
 
@@ -277,6 +281,17 @@ TEST(what_rounds_to_nought_has_no_sign)
     assert_true(pen_rounded(-0.06, 1) == -0.06 && pen_rounded(-0.4, 0) == 0 && pen_rounded(-0.0, 6) == 0);
 }
 
+TEST(decimals_follow_the_value_on_a_logarithmic_scale)
+{
+    struct plant_group group = { .min = 0.1, .max = 1000 };
+    assert_int_equal(pen_decimals(&group, 0.45), 0);
+    group.log = true;
+    assert_int_equal(pen_decimals(&group, 0.45), 4);
+    assert_int_equal(pen_decimals(&group, -0.45), 4);
+    assert_int_equal(pen_decimals(&group, 0), pen_decimals(&group, 0.1));
+    assert_int_equal(pen_decimals(&group, 900), 0);
+}
+
 /* Returns the number of pixels that differ between two frames at the upper left corner of one half, where its caption is drawn.
    */
 static int caption_px(const struct frame *frame, const struct frame *plain, int half)
@@ -329,6 +344,35 @@ static unsigned sum_of(const struct frame *frame, const struct label_box *box)
         for (int x = (int)box->x; x < (int)(box->x + box->width); x++)
             sum = sum * 31 + frame->bgrx[y * frame->stride_bytes + 4 * x];
     return sum;
+}
+
+/* Returns a checksum of the label of a tag that was lost half an hour before midnight, `minutes` before the readings of the frame. */
+static unsigned held_label(int minutes)
+{
+    struct tm lost = { .tm_year = 126, .tm_mon = 5, .tm_mday = 6, .tm_hour = 23, .tm_min = 30, .tm_isdst = -1 };
+    struct reading *reading = &stand.snapshot->readings[2], before = *reading;
+    struct snapshot was = *stand.snapshot;
+    *reading = (struct reading){ .quality = QUALITY_BAD_COMMUNICATION_ERROR, .alarm = ALARM_H, .alarm_status = ALARM_ACTIVE };
+    reading->received_utc_ns = mktime(&lost) * NS_PER_S;
+    stand.snapshot->taken_utc_ns = reading->received_utc_ns + minutes * 60 * NS_PER_S;
+    struct frame *frame = frame_create(NULL, WIDTH, HEIGHT);
+    view_default(&stand.toy->scene, WIDTH, HEIGHT, &frame->view);
+    memset(frame->bgrx, 255, (size_t)frame->stride_bytes * HEIGHT);
+    frame->markers = mem_array(1, sizeof(*frame->markers));
+    frame->marker_count = 1;
+    frame->markers[0] = (struct frame_marker){ .tag = 2, .x_px = 400, .y_px = 300, .quality = QUALITY_BAD_COMMUNICATION_ERROR };
+    overlay_draw(frame, &stand.toy->scene, stand.snapshot, NULL);
+    unsigned sum = sum_of(frame, &(struct label_box){ 200, 220, 600, 160 });
+    frame_unref(&frame);
+    stand.snapshot->taken_utc_ns = was.taken_utc_ns;
+    *reading = before;
+    return sum;
+}
+
+TEST(the_time_of_a_lost_value_has_its_day_after_midnight)
+{
+    assert_int_equal(held_label(5), held_label(25));
+    assert_int_not_equal(held_label(25), held_label(35));
 }
 
 /* Every text of the overlay must change with the language. Each part is compared separately: the header, the captions of both

@@ -59,7 +59,7 @@ static void format_reading(const struct pen *pen, int tag, char out[200])
     const struct reading *reading = &pen->snapshot->readings[tag];
     const struct plant_group *group = of->group >= 0 ? &pen->scene->plant->groups[of->group] : NULL;
     const char *kind = alarm_kind_name((enum alarm_kind)reading->alarm);
-    int decimals = group ? pen_decimals(group->max - group->min) : 2;
+    int decimals = group ? pen_decimals(group, reading->value) : 2;
     if (quality_is_bad(reading->quality))
         snprintf(out, 200, "%.120s  %s  %s", of->name, pen_word(pen, WORD_BAD), kind);
     else

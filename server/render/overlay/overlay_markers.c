@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <time.h>
 
+#include "base/clock.h"
 #include "base/mem.h"
 #include "render/frame_record.h"
 #include "render/overlay/crowd.h"
@@ -111,19 +112,20 @@ static bool is_elsewhere(const struct pen *pen, const struct frame_marker *marke
 }
 
 /* Formats the label of a tag whose reading is Bad: the alarm raised by the tag's last usable value, and the time of that value
-   (with the date if older than a day). */
+   (with the date if that is not the date of the readings). */
 static void format_bad(const struct pen *pen, const struct reading *reading, char out[64])
 {
     enum alarm_kind alarm = (enum alarm_kind)reading->alarm;
-    time_t seconds = (time_t)(reading->received_utc_ns / 1000000000);
-    struct tm local;
+    time_t seconds = (time_t)(reading->received_utc_ns / NS_PER_S), now = (time_t)(pen->snapshot->taken_utc_ns / NS_PER_S);
+    struct tm local, today;
     char clock[16], since[48];
-    if (alarm == ALARM_NONE || alarm == ALARM_BAD || !reading->received_utc_ns || !localtime_r(&seconds, &local)) {
+    if (alarm == ALARM_NONE || alarm == ALARM_BAD || !reading->received_utc_ns || !localtime_r(&seconds, &local) ||
+        !localtime_r(&now, &today)) {
         snprintf(out, 64, "%s", pen_word(pen, WORD_BAD));
         return;
     }
-    bool days_ago = pen->snapshot->taken_utc_ns - reading->received_utc_ns >= INT64_C(86400000000000);
-    strftime(clock, sizeof(clock), days_ago ? "%m-%d %H:%M" : "%H:%M", &local);
+    bool is_today = local.tm_yday == today.tm_yday && local.tm_year == today.tm_year;
+    strftime(clock, sizeof(clock), is_today ? "%H:%M" : "%m-%d %H:%M", &local);
     pen_say(pen, WORD_HELD_SINCE, clock, NULL, since, sizeof(since));
     snprintf(out, 64, "%s %s", alarm_kind_name(alarm), since);
 }
@@ -135,7 +137,7 @@ static void format_value(const struct pen *pen, const struct frame_marker *marke
     const struct reading *reading = &pen->snapshot->readings[marker->tag];
     bool difference = pen->view.field.show == SHOW_DIFFERENCE, lost = quality_is_bad(reading->quality);
     const char *alarm = alarm_kind_name((enum alarm_kind)reading->alarm);
-    int decimals = pen_decimals(group->max - group->min);
+    int decimals = pen_decimals(group, marker->value);
     double value = pen_rounded(marker->value, decimals);
     if (is_elsewhere(pen, marker))
         snprintf(out, 64, "%s", alarm ? alarm : "");

@@ -115,8 +115,11 @@ double pen_rounded(double value, int decimals)
     return fabs(value) < 0.5 * pow(10, -decimals) ? 0 : value;
 }
 
-int pen_decimals(double range)
+int pen_decimals(const struct plant_group *group, double value)
 {
+    double range = group->max - group->min;
+    if (group->log)
+        range = value != 0 ? fabs(value) : group->min;
     return (int)fmin(fmax(ceil(-log10(range / 500)), 0), 6);
 }
 

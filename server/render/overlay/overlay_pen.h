@@ -59,8 +59,9 @@ void pen_say(const struct pen *pen, enum overlay_word word, const char *a, const
 
 /* Formats a value with as few decimals as possible, but enough to show differences of 1/5000 of `range`. */
 void pen_number(double value, double range, char out[40]);
-/* Returns the number of decimals that are needed to show differences of 1/500 of `range`. */
-int pen_decimals(double range);
+/* Returns the number of decimals that are needed to show differences of 1/500 of the group's range, or, if the group's colour
+   scale is logarithmic, of 1/500 of the value: values near the lower end may be far smaller than the range. */
+int pen_decimals(const struct plant_group *group, double value);
 /* Returns the value rounded to this many decimals, and 0 instead of -0. */
 double pen_rounded(double value, int decimals);
 
