@@ -2,15 +2,18 @@
 // Texts that the page shows: numbers, ages, clock, legend, labels, meters, and the page's address.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
+import { limitText } from '../../clients/web/app/alarms/alarm_bar.js';
 import { readAddress, writeAddress } from '../../clients/web/core/address.js';
 import {
-    ageText, changeText, decimalsFor, numberText, shortNumberText, unitText, worst, zoneClock,
+    ageText, changeText, decimalsFor, decimalsOf, numberText, shortNumberText, timeOrDay, unitText, zoneClock,
 } from '../../clients/web/core/format.js';
+import { Legend } from '../../clients/web/app/viewport/legend.js';
 import { halfAt, nearestMarker } from '../../clients/web/core/nearest.js';
 import { halves } from '../../clients/web/core/split_view.js';
 import {
     colourOf, edges, niceStep, placeOf, rampChoices, scaleTicks, spread, ticks, valueAt,
 } from '../../clients/web/core/legend.js';
+import { worst } from '../../clients/web/core/model.js';
 import { statusText } from '../../clients/web/core/quality.js';
 import { snapshotQuery } from '../../clients/web/core/query.js';
 import { hatchAt, patternPeriodPx, stippleAt } from '../../clients/web/core/patterns.js';
@@ -29,6 +32,27 @@ test('decimals follow the range, zero has no minus sign, and a missing value is 
     assert.deepEqual(short, ['20', '0.05', '−1.5', '0', '–', '100']);
 });
 
+test('on a logarithmic scale the decimals follow the value, so that no value or limit is rounded to 0', async () => {
+    await learnWords();
+    const group = { min: 0.1, max: 1000, scale: 'log', unit: 'ppm' }, textOf = (value) => numberText(value, decimalsOf(group, value));
+    assert.deepEqual([0.45, -0.45, 5, 45, 450, 0].map(textOf), ['0.450', '−0.450', '5.00', '45.0', '450', '0.0000']);
+    assert.equal(decimalsOf({ ...group, scale: 'linear' }, 0.45), decimalsFor(999.9));
+    assert.equal(decimalsOf(null, 0.45), 2);
+    const model = { readings: [{ value: 0.46, quality: 'good' }], group: () => group };
+    const alarm = { tag: { index: 0 }, kind: 'H', value: 0.45, limit: 0.4 };
+    const session = { model, time: { atUs: null }, clockUs: () => null, now: () => 0 };
+    assert.equal(limitText(session, alarm, true), 'raised at 0.450 ppm, now 0.460 ppm (limit 0.400 ppm)');
+});
+
+test('a time of another day is shown with its day', () => {
+    const clock = zoneClock('Europe/Oslo'), now = Date.UTC(2026, 5, 7, 6), at = (day, hour) => Date.UTC(2026, 5, day, hour, 15);
+    assert.equal(timeOrDay(clock, at(7, 5), now), '07:15:00');
+    assert.equal(timeOrDay(clock, at(7, 5), now, 5), '07:15');
+    assert.equal(timeOrDay(clock, at(6, 21), now), 'Jun 6 23:15');
+    assert.equal(timeOrDay(clock, at(6, 22), now), '00:15:00', 'the plant\'s day, not the day in UTC');
+    assert.equal(timeOrDay(clock, at(8, 5), now, 5), 'Jun 8 07:15');
+});
+
 test('units are written as engineers write them', () => {
     assert.deepEqual(['degC', '°C', 'bar', 'mm/s', 'm3/h', 'kg/cm2', 'um'].map(unitText),
         ['°C', '°C', 'bar', 'mm/s', 'm³/h', 'kg/cm²', 'µm']);
@@ -37,6 +61,29 @@ test('units are written as engineers write them', () => {
 test('ages are written with fitting units', () => {
     assert.deepEqual([0, 940, 9940, 9960, 119000, 121000, 7.3e6, 1.8e8, null].map(ageText),
         ['0.0 s', '0.9 s', '9.9 s', '10 s', '119 s', '2 min', '2 h', '2 d', '–']);
+});
+
+test('after a reload of the plant, the legend has the new limits and colours', () => {
+    Object.assign(globalThis, { ResizeObserver: class { observe() {} }, window: { matchMedia: () => ({ addEventListener() {} }) } });
+    try {
+        const listeners = new Map(), on = (name, f) => listeners.set(name, [...listeners.get(name) ?? [], f]), drawn = [];
+        const emit = (name) => (listeners.get(name) ?? []).forEach((f) => f());
+        const modelOf = (H, colour) => ({ tags: [], group: () => ({ id: 'T', min: 0, max: 10, limits: { H } }),
+            colormap: () => ({ rgb: [colour, 0, 0], safe: true }) });
+        const session = { on, model: modelOf(8, 1), shown: { group: 'T', show: 'value' }, rangeOf: () => [0, 10] };
+        const legend = new Legend({ session, element: { replaceChildren: (_, scale) => drawn.push(scale), append() {} },
+            paramsOf: (params) => params, lying: { matches: false, addEventListener() {} } });
+        Object.assign(legend, { heading: () => null, keys: () => null, scale: ({ map }, _, { H }) => [H, map.rgb[0]] });
+        emit('params');
+        emit('params');
+        session.model = modelOf(9, 2);
+        emit('welcome');
+        emit('params');
+        assert.deepEqual(drawn, [[8, 1], [9, 2]]);
+    } finally {
+        delete globalThis.ResizeObserver;
+        delete globalThis.window;
+    }
 });
 
 test('the plant clock is in the plant\'s zone and states the offset, in winter and summer', () => {

@@ -363,7 +363,8 @@ test('values on contour lines and handles of a section move with a warped pictur
     const moved = (x, y) => (x < 400 ? [x + 30, y - 20] : null);
     const picture = { fullWidth: 800, fullHeight: 600, shownWidth: 800, camera: PERSPECTIVE, moved };
     const written = [], context = { measureText: () => ({ width: 20 }), fillRect() {}, fillText: (...given) => written.push(given) };
-    const session = { picture, shown: {}, range: [0, 100], model: {}, markersOf: () => ({ isolines: [[50, 100, 200], [60, 500, 200]] }) };
+    const session = { picture, shown: {}, scaleOf: () => ({ min: 0, max: 100 }), model: {},
+        markersOf: () => ({ isolines: [[50, 100, 200], [60, 500, 200]] }) };
     Isolines.prototype.draw.call({ session, overlay: { context, wide: 800, high: 600, setFont() {} } }, []);
     assert.deepEqual(written, [['50', 130, 180.5]], 'a value whose place has left the picture is not written');
     const { get } = Object.getOwnPropertyDescriptor(ClipGizmo.prototype, 'views'), viewport = { width: 800, height: 600 };

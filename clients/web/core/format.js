@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Formats numbers, units, times and qualities for the screen.
 
-import { locale, say, sayIfKnown } from './words.js';
+import { QUALITIES } from './model.js';
+import { locale, say } from './words.js';
 
 const UNITS = { degC: '°C', degF: '°F', 'deg C': '°C', 'deg F': '°F', C: '°C' };
 
@@ -13,6 +14,14 @@ export function unitText(unit) {
 // Returns the number of decimals for values that span `range`: one for a range of 160, two for a range of 16.
 export function decimalsFor(range) {
     return range > 0 && Number.isFinite(range) ? Math.max(0, Math.min(6, 2 - Math.floor(Math.log10(range / 4)))) : 2;
+}
+
+// Returns the number of decimals for a value of a sensor group, or of any { min, max, scale }; null: unknown group. On a
+// logarithmic scale, the number follows the value's size, because values near the lower end may be far smaller than the range.
+export function decimalsOf(group, value) {
+    if (!group)
+        return 2;
+    return decimalsFor(group.scale === 'log' ? Math.abs(value) || group.min : group.max - group.min);
 }
 
 const DECIMAL = new Intl.NumberFormat(locale).format(0.5).replace(/[\d٠-٩]/g, '');
@@ -87,13 +96,11 @@ function makeClock(timeZone) {
     };
 }
 
-export const QUALITIES = ['good', 'uncertain', 'bad']; // from best to worst
+// Returns an instant in milliseconds as text: its time (`digits` 5: without seconds) if it is on the same day as the instant
+// nowMs, otherwise its day and time without seconds. clock: from zoneClock().
+export function timeOrDay(clock, ms, nowMs, digits = 8) {
+    const { date, day, time } = clock(ms);
+    return date === clock(nowMs).date ? time.slice(0, digits) : `${day} ${time.slice(0, 5)}`;
+}
 
 export const qualityText = (quality) => say(QUALITIES.includes(quality) ? `quality.${quality}` : 'quality.unknown');
-
-export const title = (text) => text.charAt(0).toUpperCase() + text.slice(1);
-
-// Returns the name of a sensor group's quantity, translated if it is a common quantity.
-export const quantityText = ({ quantity, id }) => sayIfKnown(`quantity.${(quantity || id).toLowerCase()}`, title(quantity || id));
-
-export const worst = (qualities) => QUALITIES[Math.max(-1, ...qualities.map((q) => QUALITIES.indexOf(q)))] ?? null;

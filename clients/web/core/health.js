@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Decides for the whole page whether the user may trust the picture. Returns one state with a short and a long text.
-import { ageText, title, zoneClock } from './format.js';
-import { say } from './words.js';
+import { ageText, zoneClock } from './format.js';
+import { say, title } from './words.js';
 
 const seconds = (ms) => say('age.s', { n: Math.max(1, Math.ceil(ms / 1000)) });
 

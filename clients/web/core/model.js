@@ -1,8 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The page's model of the plant: the server's message `welcome`, and the newest value, quality and age of every tag.
 import { Alarms, graver } from './alarms.js';
-import { worst } from './format.js';
 import { decodeBase64 } from './wire.js';
+import { sayIfKnown, title } from './words.js';
+
+export const QUALITIES = ['good', 'uncertain', 'bad']; // from best to worst
+
+export const worst = (qualities) => QUALITIES[Math.max(-1, ...qualities.map((q) => QUALITIES.indexOf(q)))] ?? null;
+
+// Returns the name of a sensor group's quantity, translated if it is a common quantity.
+export const quantityText = ({ quantity, id }) => sayIfKnown(`quantity.${(quantity || id).toLowerCase()}`, title(quantity || id));
 
 export class Model {
     constructor(welcome) {

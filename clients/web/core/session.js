@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The session of this page with the server: stores the camera and the view's parameters, and sends them again after a reconnect.
 import { besideLegend, cameraMessage, cameraOfMessage, home, same, valid } from './camera.js';
-import { quantityText } from './format.js';
 import { LatencyMeter, RateMeter } from './meters.js';
-import { Model } from './model.js';
+import { Model, QUALITIES, quantityText } from './model.js';
 import { decodeFrame, decodeMessage, depthGridOf, isGivenUp, WireError } from './wire.js';
 import { say } from './words.js';
 
@@ -24,7 +23,6 @@ const GROUPS_OWN = ['interpolation', 'distance', 'fill', 'power', 'radius_m', 'r
 // types of messages whose contents belong to the instant that is shown, not to the present
 const OF_THE_INSTANT = ['tags', 'picked'];
 const NOW = { atUs: null, speed: 0, fromUs: null };
-const QUALITIES = ['good', 'uncertain', 'bad'];
 const MOST_BACKLOG_BYTES = 64 * 1024, RECENT_MS = 5000;
 
 const pick = (from, names) => Object.fromEntries(names.filter((name) => from[name] !== undefined).map((name) => [name, from[name]]));
@@ -436,6 +434,12 @@ export class Session {
 
     get range() {
         return this.rangeOf(this.params);
+    }
+
+    // Returns the colour scale of view parameters as { min, max, scale }, for decimalsOf() in format.js.
+    scaleOf(params) {
+        const [min, max] = this.rangeOf(params);
+        return { min, max, scale: params.scale };
     }
 
     // Returns the server's time, continued by the page's clock; null before the server's first message.

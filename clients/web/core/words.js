@@ -24,5 +24,8 @@ export function learnWords(name = 'lazy') {
     return learnt.get(name);
 }
 
+// Returns a text with its first letter in upper case.
+export const title = (text) => text.charAt(0).toUpperCase() + text.slice(1);
+
 // Returns the text for a key if there is one, else `otherwise`.
 export const sayIfKnown = (key, otherwise) => (words[key] === undefined ? otherwise : say(key));

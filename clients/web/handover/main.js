@@ -3,7 +3,7 @@
 // browser. ?from and ?to as in /api/v1/history.
 import { asideOf } from '../core/alarm_actions.js';
 import { areaOf } from '../core/alarm_table.js';
-import { decimalsFor, numberText, unitText, zoneClock } from '../core/format.js';
+import { decimalsOf, numberText, unitText, zoneClock } from '../core/format.js';
 import { hearAlarms, readJournal, sortJournal } from '../core/handover.js';
 import { ask } from '../core/history.js';
 import { Model } from '../core/model.js';
@@ -44,9 +44,9 @@ function aboutOf(model, tag) {
 
 // Returns a value and the limit that it exceeded as text, in the unit of the journal's row (null: not known), else in the tag's unit.
 function valueOf(model, tag, { value, limit, unit: was }) {
-    const group = tag && model.group(tag.group), decimals = group ? decimalsFor(group.max - group.min) : 2;
-    const unit = unitText(was === undefined ? tag?.unit || group?.unit : was ?? ''), texts = [numberText(value, decimals),
-        limit === null ? '' : `(${numberText(limit, decimals)})`, unit];
+    const group = tag && model.group(tag.group), number = (x) => numberText(x, decimalsOf(group, x));
+    const unit = unitText(was === undefined ? tag?.unit || group?.unit : was ?? ''), texts = [number(value),
+        limit === null ? '' : `(${number(limit)})`, unit];
     return value === null ? '' : texts.filter(Boolean).join(' ');
 }
 

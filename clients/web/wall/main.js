@@ -9,6 +9,7 @@ import { ask } from '../core/history.js';
 import { Session } from '../core/session.js';
 import { brightness, burnShift, millimetresPerPx, SPREAD_MS, wallFit } from '../core/wall.js';
 import { language, learnWords, say } from '../core/words.js';
+import { asOf } from '../app/alarms/alarm_bar.js';
 import { clock, watchSleep } from '../app/common/clock.js';
 import { byId, make, setText, setVariable } from '../app/common/dom.js';
 import { store, stored } from '../app/common/storage.js';
@@ -125,7 +126,7 @@ function tick() {
     byId('lost').hidden = lostAt === null || now - lostAt < LOST_MS || !byId('denied').hidden;
     const heard = model && session.freshAt !== null;
     if (!byId('lost').hidden) {
-        setText(lostWords, heard ? say('walls.lost', { time: timeOf(session.clockUs(session.freshAt)) }) : say('walls.never'));
+        setText(lostWords, heard ? say('walls.lost', { time: asOf(session) }) : say('walls.never'));
         setText(lostSelf, heard ? '' : say('walls.self', { wall: query.get('wall'), display: number, time: OPENED }));
     }
     if (!model)
@@ -138,13 +139,11 @@ function tick() {
     for (const pane of panes)
         pane.tick(now);
     if (wall) {
-        const [hours, minutes] = timeOf(session.clockUs()).split(':').map(Number);
+        const [hours, minutes] = zoneClock(model.plant.time_zone)(session.clockUs() / 1000).time.split(':').map(Number);
         const calls = model.alarms.list().some(({ waiting }) => waiting);
         setVariable(document.body, '--light', brightness(wall.dim, hours * 60 + minutes, calls));
     }
 }
-
-const timeOf = (us) => zoneClock(session.model.plant.time_zone)(us / 1000).time;
 
 setInterval(tick, TICK_MS);
 window.addEventListener('resize', fit);

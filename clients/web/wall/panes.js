@@ -3,13 +3,14 @@
 // contain the normal page in an iframe.
 import { byEquipment } from '../core/alarm_call.js';
 import { isGone, isWaiting } from '../core/alarms.js';
-import { ageText, decimalsFor, numberText, qualityText, quantityText, unitText, zoneClock } from '../core/format.js';
+import { ageText, decimalsOf, numberText, qualityText, unitText, zoneClock } from '../core/format.js';
 import { health } from '../core/health.js';
+import { quantityText } from '../core/model.js';
 import { refusalText } from '../core/refusals.js';
 import { say } from '../core/words.js';
 import { clock } from '../app/common/clock.js';
 import { make, setText, setVariable } from '../app/common/dom.js';
-import { badge, limitText } from '../app/alarms/alarm_bar.js';
+import { badge, limitText, timeOf } from '../app/alarms/alarm_bar.js';
 import { SnapshotPane } from './snapshot_pane.js';
 
 // LEAST_PART: smallest scale to which the letters shrink so that a pane's content fits; LATEST_MS: time after which an alarm's
@@ -25,7 +26,7 @@ export function paneOf(pane, context) {
     const title = make('h2', {}, pane.title ?? ''), body = make('div', { class: 'body' });
     const element = make('section', { class: `pane ${pane.kind}` }, title, body);
     element.style.gridArea = areaOf(pane.area);
-    const { tick = () => {} } = KINDS[pane.kind](pane, { ...context, title, body, element, timeOf });
+    const { tick = () => {} } = KINDS[pane.kind](pane, { ...context, title, body, element });
     return { element, kind: pane.kind, tick };
 }
 
@@ -49,13 +50,11 @@ function aboutTags(session, names) {
 
 // Returns a tag's present value and its unit as texts. `known` false: there is no usable value.
 function valueOf({ model }, tag) {
-    const { value, quality } = model.readings[tag.index], { min, max, unit } = model.group(tag.group) ?? { min: 0, max: 1, unit: '' };
+    const { value, quality } = model.readings[tag.index], group = model.group(tag.group);
     const known = quality !== 'bad' && value !== null;
-    return known ? { known, text: numberText(value, decimalsFor(max - min)), unit: unitText(tag.unit || unit) }
+    return known ? { known, text: numberText(value, decimalsOf(group, value)), unit: unitText(tag.unit || group?.unit) }
         : { known, text: qualityText('bad'), unit: '' };
 }
-
-const timeOf = (session, us) => zoneClock(session.model.plant.time_zone)(us / 1000).time;
 
 // Returns the age of the oldest reading in the shown picture, for sessions that receive no readings themselves.
 function pictureAgeMs(session) {
@@ -175,7 +174,7 @@ function ViewsPane(pane, context) {
         const { view, wrong, refusal } = viewsOf(page.session).find(({ id }) => id === pane.items[at]) ?? {};
         const { width, height } = page.session.size;
         const wanted = alarm ? `${alarm.tag.name}/${alarm.kind}/${isGone(alarm.state)}`
-            : JSON.stringify([at, order, view, wrong, width, height]);
+            : JSON.stringify([at, order, order && timeOf(session, order.time_us), view, wrong, width, height]);
         const unshown = alarm || order?.view || !wrong ? null : { wrong, refusal };
         element.classList.toggle('unshown', Boolean(unshown));
         element.classList.toggle('called', Boolean(alarm));
@@ -278,8 +277,8 @@ function AlarmsPane(pane, { session, call, title, body }) {
     return { tick() {
         const { alarms } = session.model, all = alarms.list(), flood = call.isFlood(all, session.clockUs());
         setText(about, ageOf(clock.now() - session.freshAt));
-        const { active, waiting } = alarms.counts(), now = JSON.stringify([flood, body.clientHeight,
-            all.map((alarm) => [alarm.id, alarm.state, alarm.priority, flood ? '' : nowText(session, alarm)])]);
+        const { active, waiting } = alarms.counts(), now = JSON.stringify([flood, body.clientHeight, all.map((alarm) =>
+            [alarm.id, alarm.state, alarm.priority, timeOf(session, alarm.raisedUs), flood ? '' : nowText(session, alarm)])]);
         if (now === said)
             return;
         said = now;

@@ -5,12 +5,13 @@ import { ask } from '../core/history.js';
 import { say } from '../core/words.js';
 import { clock } from '../app/common/clock.js';
 import { make, setText } from '../app/common/dom.js';
+import { timeOf } from '../app/alarms/alarm_bar.js';
 
 // UNHEARD_MS: after a longer silence of this plant's server, the state of the other plant is unknown
 const ASK_MS = 1000, UNHEARD_MS = 5000;
 
-// Returns { tick(now) }. timeOf(us) formats a time in the plant's time zone.
-export function SnapshotPane(pane, { session, title, body, timeOf }) {
+// Returns { tick(now) }.
+export function SnapshotPane(pane, { session, title, body }) {
     const [id] = pane.items, image = make('img', { alt: '', hidden: '' }), card = make('div', { class: 'gone' });
     const about = make('span', { class: 'about' }), name = make('span', { class: 'said' });
     let state = null, asks = false, askedAt = -Infinity;

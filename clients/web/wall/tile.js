@@ -6,13 +6,14 @@ import { isGone } from '../core/alarms.js';
 import { projector } from '../core/camera.js';
 import { Connection } from '../core/connection.js';
 import { browserDecoding } from '../core/decoding.js';
-import { ageText, decimalsFor, numberText, quantityText, unitText, zoneClock } from '../core/format.js';
+import { ageText, decimalsOf, numberText, unitText } from '../core/format.js';
+import { quantityText } from '../core/model.js';
 import { viewOf } from '../core/named_views.js';
 import { inForce, placeOf as placeOfNote } from '../core/notes.js';
 import { refusalText } from '../core/refusals.js';
 import { SPREAD_MS } from '../core/wall.js';
 import { say } from '../core/words.js';
-import { badge } from '../app/alarms/alarm_bar.js';
+import { badge, timeOf } from '../app/alarms/alarm_bar.js';
 import { clock } from '../app/common/clock.js';
 import { make, setText, setVariable } from '../app/common/dom.js';
 import { Legend } from '../app/viewport/legend.js';
@@ -70,7 +71,6 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
 
     // wrong: names in the view that the leading display could not find in the plant; null: none
     let at = 0, changedAt = null, shown = null, called = null, wrong = null;
-    const timeOf = (us) => zoneClock(words.model.plant.time_zone)(us / 1000).time;
     session.on('fitted', (camera) => session.setCamera(camera));
 
     function look(text, id) {
@@ -116,8 +116,9 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
         const who = order && [order.desk, order.by].filter(Boolean).join(', ');
         const counts = call.isFlood(alarms, words.clockUs()) ? 'walls.flood' : 'walls.counts';
         const parts = [
-            alarm ? say('walls.since', { time: timeOf(alarm.raisedUs) }) : order?.view ? order.title : pane.title ?? view?.title ?? wall.id,
-            !alarm && order && say(order.held ? 'walls.held' : 'walls.sent', { who, time: timeOf(order.time_us) }),
+            alarm ? say('walls.since', { time: timeOf(words, alarm.raisedUs) })
+                : order?.view ? order.title : pane.title ?? view?.title ?? wall.id,
+            !alarm && order && say(order.held ? 'walls.held' : 'walls.sent', { who, time: timeOf(words, order.time_us) }),
             leads && !alarm && !order && pane.stops?.[at].text,
             active + waiting > 0 && say(counts, { active, waiting }),
             group && quantityText(group),
@@ -143,8 +144,8 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
         const own = session.tiles.late.find((one) => one.display === display), { picture } = session;
         const silent = session.freshAt !== null && now - session.freshAt > OLD_MS;
         const others = session.tiles.missing.concat(session.tiles.late.map((one) => one.display)).sort((a, b) => a - b);
-        const text = refusal() || (own ? say('walls.late', { time: timeOf(own.since_us) })
-            : silent ? say('walls.lost', { time: timeOf(words.clockUs(session.freshAt)) })
+        const text = refusal() || (own ? say('walls.late', { time: timeOf(words, own.since_us) })
+            : silent ? say('walls.lost', { time: timeOf(words, words.clockUs(session.freshAt)) })
                 : words.model.live === false ? say('health.nodata')
                     : session.tiles.leads && others.length > 0 ? say('walls.missing', { displays: others.join(', ') })
                         : session.tiles.leads && wrong ? say('named.wrong', { why: refusalText(wrong.wrong, wrong.refusal) }) : '');
@@ -179,7 +180,7 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
     function markOf(alarm, value, behind) {
         const { tag } = alarm, group = words.model.group(tag.group), mark = make('i', { class: behind ? 'alarm behind' : 'alarm' });
         const said = value === null || value === undefined || !group ? ''
-            : `${numberText(value, decimalsFor(group.max - group.min))} ${unitText(tag.unit || group.unit)}`;
+            : `${numberText(value, decimalsOf(group, value))} ${unitText(tag.unit || group.unit)}`;
         mark.append(badge(alarm.priority, isGone(alarm.state)), ` ${tag.name} ${said}`);
         return mark;
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The alarm bar at the top of the page, always visible, with the numbers of alarms. The alarm list is loaded when the user
 // first opens it.
-import { decimalsFor, numberText, unitText, zoneClock } from '../../core/format.js';
+import { decimalsOf, numberText, timeOrDay, unitText, zoneClock } from '../../core/format.js';
 import { say } from '../../core/words.js';
 import { byId, make, setText } from '../common/dom.js';
 
@@ -16,8 +16,7 @@ export function heldSince(session, { tag, kind }) {
     const ageMs = bad && kind !== 'BAD' ? model.ageMs(tag.index, session.now()) : null, nowUs = time.atUs ?? session.clockUs();
     if (ageMs === null || nowUs === null)
         return null;
-    const clock = zoneClock(model.plant.time_zone), then = clock(nowUs / 1000 - ageMs), minute = then.time.slice(0, 5);
-    return then.date === clock(nowUs / 1000).date ? minute : `${then.day} ${minute}`;
+    return timeOrDay(zoneClock(model.plant.time_zone), nowUs / 1000 - ageMs, nowUs / 1000, 5);
 }
 
 // Returns a text about an alarm: the value that raised it, its limit, and the present value, or since when there is no usable
@@ -28,8 +27,8 @@ export function limitText(session, alarm, fresh) {
     const since = fresh && !isPast ? heldSince(session, alarm) : null, held = since && say('alarms.since', { time: since });
     if (value === null || limit === null)
         return held ?? '';
-    const group = model.group(tag.group), decimals = group ? decimalsFor(group.max - group.min) : 2;
-    const textOf = (number) => `${numberText(number, decimals)} ${unitText(tag.unit || group?.unit)}`;
+    const group = model.group(tag.group);
+    const textOf = (number) => `${numberText(number, decimalsOf(group, number))} ${unitText(tag.unit || group?.unit)}`;
     const reading = model.readings[tag.index], known = reading.quality === 'bad' ? say('novalue') : textOf(reading.value);
     const now = isPast ? '' : `, ${held ?? say('alarms.present', { now: fresh ? known : '–' })}`;
     return say('alarms.value', { value: textOf(value), now, limit: textOf(limit) });
@@ -101,5 +100,8 @@ export class AlarmBar {
     }
 }
 
-// Returns the time of the server's last message, in the plant's time zone.
-export const asOf = (session) => zoneClock(session.model.plant.time_zone)(session.clockUs(session.freshAt) / 1000).time;
+// Returns an instant as text in the plant's time zone, with its day if that is not today.
+export const timeOf = (session, us) => timeOrDay(zoneClock(session.model.plant.time_zone), us / 1000, session.clockUs() / 1000);
+
+// Returns the time of the server's last message.
+export const asOf = (session) => timeOf(session, session.clockUs(session.freshAt));

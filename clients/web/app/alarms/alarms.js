@@ -2,7 +2,7 @@
 // The alarm list: one row per tag, with actions on one or several alarms. Its second tab is the alarm journal.
 import { allOf, asideOf, inMessages, passes, rowActions, targetsOf } from '../../core/alarm_actions.js';
 import { areaOf, areasOf, isIn, tableCsv } from '../../core/alarm_table.js';
-import { zoneClock } from '../../core/format.js';
+import { timeOrDay, zoneClock } from '../../core/format.js';
 import { put, refusalText } from '../../core/refusals.js';
 import { actOnAlarm } from '../../core/requests.js';
 import { say } from '../../core/words.js';
@@ -63,6 +63,11 @@ export class AlarmList {
 
     get alarms() {
         return this.session.model?.alarms ?? null;
+    }
+
+    // Returns today's date, on which the texts of times in all rows depend.
+    get today() {
+        return zoneClock(this.session.model.plant.time_zone)(this.session.clockUs() / 1000).date;
     }
 
     get open() {
@@ -138,7 +143,7 @@ export class AlarmList {
     tick() {
         if (!this.open)
             return;
-        if (this.shownFresh !== this.overlay.fresh)
+        if (this.shownFresh !== this.overlay.fresh || this.shownDay !== this.today)
             this.show();
         for (const [element, row] of this.journalOpen ? [] : this.drawn ?? [])
             refreshCells(this.session, element, row, this.overlay.fresh);
@@ -149,6 +154,7 @@ export class AlarmList {
             return;
         const { fresh } = this.overlay;
         this.shownFresh = fresh;
+        this.shownDay = this.today;
         byId('alarms-then').hidden = this.journalOpen || this.session.time.atUs === null;
         setText(byId('alarms-stale'), fresh ? '' : say('alarms.stale', { time: asOf(this.session) }));
         this.keepFocus(() => this.showList());
@@ -239,7 +245,7 @@ export class AlarmList {
     }
 
     fill(id, rows) {
-        return this.table.fill(byId(id), rows, (row) => JSON.stringify([row, rowActions(row, this.alarms.mode, this.role)],
+        return this.table.fill(byId(id), rows, (row) => JSON.stringify([this.today, row, rowActions(row, this.alarms.mode, this.role)],
             (key, value) => (key === 'tag' ? undefined : value)), (row) => this.draw(row));
     }
 
@@ -354,8 +360,8 @@ export class AlarmList {
     // alarm, the reason, and whether the measurement is bad.
     noteOf(row) {
         const { state, who, reason, untilUs, held } = row;
-        const clock = zoneClock(this.session.model.plant.time_zone);
-        const until = untilUs === null ? '' : say('alarms.until', { time: clock(untilUs / 1000).time.slice(0, 5) });
+        const clock = zoneClock(this.session.model.plant.time_zone), nowMs = this.session.clockUs() / 1000;
+        const until = untilUs === null ? '' : say('alarms.until', { time: timeOrDay(clock, untilUs / 1000, nowMs, 5) });
         const by = who && state !== 'unacknowledged' ? say('alarms.by', { who }) : '';
         const since = held && this.session.time.atUs === null ? heldSince(this.session, row) : null;
         const bad = since ? say('alarms.heldfrom', { time: since }) : held ? say('alarms.held') : '';

@@ -139,7 +139,8 @@ export class Journal {
         if (!this.isShown)
             return;
         const passing = this.table.sorted(this.passing), all = this.rows.length;
-        this.drawn = this.table.fill(byId('journal-list'), passing.slice(0, this.shown), ({ id }) => id, (row) => this.draw(row));
+        this.drawn = this.table.fill(byId('journal-list'), passing.slice(0, this.shown), ({ id }) => `${id} ${this.list.today}`,
+            (row) => this.draw(row));
         const changes = byId('journal-which');
         this.list.showApplied(passing.length, all, [...changes.value ? [changes.selectedOptions[0].text] : [], ...this.list.applied],
             this.rangeText);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Drift of a sensor from its neighbours' prediction over a week, computed by the daemon from recorded readings (HTTP.md,
 // /api/v1/drift): a curve of the week on the sensor's card, and a list of drifting sensors.
-import { decimalsFor, numberText, unitText } from '../../core/format.js';
+import { decimalsOf, numberText, unitText } from '../../core/format.js';
 import { ask } from '../../core/history.js';
 import { say } from '../../core/words.js';
 
@@ -25,8 +25,8 @@ export async function driftOf(session, query) {
 
 // Returns a sensor's drift as text, such as +1.4 °C ± 0.2, or null if the drift is unknown.
 function changeText({ change, error }, group) {
-    const digits = Math.max(1, decimalsFor(group.max - group.min));
-    return `${change < 0 ? '−' : '+'}${numberText(Math.abs(change), digits)} ${unitText(group.unit)} ± ${numberText(error, digits)}`;
+    const number = (value) => numberText(Math.abs(value), Math.max(1, decimalsOf(group, value)));
+    return `${change < 0 ? '−' : '+'}${number(change)} ${unitText(group.unit)} ± ${number(error)}`;
 }
 
 export function driftText(row, group) {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The card of a point on the plant's surface: its equipment, the value at the point (interpolated between sensors), the sensors
 // that contribute to the value, and the uncertainty.
-import { decimalsFor, numberText, unitText } from '../../core/format.js';
+import { decimalsOf, numberText, unitText } from '../../core/format.js';
 import { askPick } from '../../core/requests.js';
+import { halves } from '../../core/split_view.js';
 import { say } from '../../core/words.js';
 import { placeInPicture, standBeside } from './card_position.js';
 import { byId, glyph, make } from '../common/dom.js';
@@ -87,8 +88,8 @@ export class Place {
     }
 
     number(value) {
-        const [min, max] = this.session.range;
-        return numberText(value, decimalsFor(max - min));
+        const { session } = this, all = halves(session.shown, 2), { params } = all[this.half] ?? all[0];
+        return numberText(value, decimalsOf(session.scaleOf(params), value));
     }
 
     build() {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Loop checks, tag by tag and device by device: shows which reading changed when a technician forced a transmitter, and whether
 // the reading has the expected value.
-import { decimalsFor, numberText, unitText } from '../../core/format.js';
+import { decimalsOf, numberText, unitText } from '../../core/format.js';
 import { readExpected, LoopCheckSession } from '../../core/loop_check.js';
 import { ask } from '../../core/history.js';
 import { refusalText } from '../../core/refusals.js';
@@ -67,7 +67,7 @@ export class LoopCheck {
 
     text(tag, value) {
         const { model } = this.session, group = model.group(tag.group);
-        return `${numberText(value, group ? decimalsFor(group.max - group.min) + 1 : 2)} ${unitText(tag.unit || group?.unit || '')}`.trim();
+        return `${numberText(value, decimalsOf(group, value) + (group ? 1 : 0))} ${unitText(tag.unit || group?.unit || '')}`.trim();
     }
 
     show() {

@@ -32,9 +32,7 @@ export class Coverage {
     since({ baseline }) {
         if (!baseline?.time_us)
             return null;
-        const { model } = this.session, clock = zoneClock(model.plant.time_zone);
-        const then = clock(baseline.time_us / 1000), now = clock(this.session.clockUs() / 1000);
-        const when = then.date === now.date ? then.time : `${then.day} ${then.time}`;
+        const { day, time } = zoneClock(this.session.model.plant.time_zone)(baseline.time_us / 1000), when = `${day} ${time}`;
         return say('coverage.since', { when: baseline.name ? `${baseline.name}, ${when}` : when });
     }
 

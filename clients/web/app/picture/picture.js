@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The panel of picture settings: baseline (saved readings with which the present ones are compared), colour scale and range,
 // and light.
-import { title, zoneClock } from '../../core/format.js';
+import { zoneClock } from '../../core/format.js';
 import { sunOf, sunText, towardsSun } from '../../core/sun.js';
-import { say, sayIfKnown } from '../../core/words.js';
+import { say, sayIfKnown, title } from '../../core/words.js';
 import { sensorsOf } from '../input/commands.js';
 import { byId, setText } from '../common/dom.js';
 import { Range } from '../common/number_fields.js';
@@ -95,7 +95,9 @@ export class Picture {
     }
 
     instantText(baseline) {
-        const timeZone = this.session.model.plant.time_zone;
-        return baseline?.time_us ? zoneClock(timeZone)(baseline.time_us / 1000).time : '–';
+        if (!baseline?.time_us)
+            return '–';
+        const { day, time } = zoneClock(this.session.model.plant.time_zone)(baseline.time_us / 1000);
+        return `${day} ${time}`;
     }
 }

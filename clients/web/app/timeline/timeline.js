@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The time bar: a slider over the recorded history that marks gaps, lost sources and alarms (clickable), with playback, its
 // speed, a date field and a button that returns to the present.
-import { ageText, zoneClock } from '../../core/format.js';
+import { ageText, timeOrDay, zoneClock } from '../../core/format.js';
 import { arrowS, ask, clustered, density, lost, nextTo, raised, ticks, witnesses } from '../../core/history.js';
 import { fieldInstant, fieldText } from '../../core/instant.js';
 import { travel } from '../../core/requests.js';
@@ -339,7 +339,7 @@ export class Timeline {
                 nodes.push(makeSvg('text', { x: x(us), y: 42, 'text-anchor': 'middle' }, text));
         }
         const groups = clustered(this.marks, MARK_PX * this.spanUs / (width - 2 * THUMB_PX)), words = ({ us, tag, kind }) =>
-            `${tag} ${kind}, ${this.clock(us / 1000).time}`;
+            `${tag} ${kind}, ${timeOrDay(this.clock, us / 1000, this.toUs / 1000)}`;
         for (const { us, priority, of } of groups.sort((a, b) => b.priority - a.priority)) { // most urgent alarms on top
             const all = of.slice(0, NAMED).map(words).concat(of.length > NAMED ? [say('alarms.more', { count: of.length - NAMED })] : []);
             const look = { class: `alarm p${priority}`, d: `M${x(us)} 15l-5.5-11h11z` };

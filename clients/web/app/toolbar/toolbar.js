@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The toolbar: shows the parameters of the view, and asks the server to change them.
-import { numberText, quantityText, title, unitText } from '../../core/format.js';
+import { numberText, unitText } from '../../core/format.js';
 import { multiples, rampChoices } from '../../core/legend.js';
-import { say } from '../../core/words.js';
+import { quantityText } from '../../core/model.js';
+import { say, title } from '../../core/words.js';
 import { byId, setText } from '../common/dom.js';
 import { fillSegments, fillSelect, markSegment } from '../common/choices.js';
 

@@ -18,7 +18,7 @@ const DAYS_S = 2 * 86400; // time ranges longer than this many seconds have day 
 const FONT = 'system-ui, sans-serif';
 
 export class Plot {
-    // view: the trends (trends.js), with look, clock, zone, session, spanUs, colourOf(tag), unitOf(tag), decimalsOf(tag),
+    // view: the trends (trends.js), with look, clock, zone, session, spanUs, colourOf(tag), unitOf(tag), numberText(tag, value),
     // focus, travel(us), zoomTo([from, to]) and priorities (colours). units: units of this chart, at most two. isWide true:
     // some chart of the trend has two value axes, so this chart leaves room for a second one, too. isLast true: this chart is
     // the lowest and has the time axis labels.

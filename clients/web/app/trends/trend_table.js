@@ -57,11 +57,11 @@ export class TrendTable {
         const lacks = [...this.stats.values()].some((one) => one && one.known < FULL);
         byId('trend-tags').classList.toggle('lacks', lacks);
         for (const [tag, cells] of this.rows) {
-            const decimals = view.decimalsOf(tag), { value, quality } = session.model.readings[tag.index];
+            const { value, quality } = session.model.readings[tag.index];
             // counts the present reading, too, because the recorded series ends some seconds before it
             if (!isPast && view.isLive && quality !== 'bad' && value !== null)
                 this.stats.set(tag, withNewest(this.stats.get(tag), value));
-            const stats = this.stats.get(tag), text = (number) => numberText(number ?? null, decimals);
+            const stats = this.stats.get(tag), text = (number) => view.numberText(tag, number);
             setText(cells.now, quality === 'bad' ? say('novalue') : text(value));
             for (const name of ['min', 'mean', 'max'])
                 setText(cells[name], text(stats?.[name]));
@@ -74,7 +74,7 @@ export class TrendTable {
         for (const tag of this.view.tags) {
             const cell = this.rows.get(tag)?.at, one = series.get(tag.name);
             if (cell)
-                setText(cell, numberText(us === null || !one ? null : valueAt(one, us), this.view.decimalsOf(tag)));
+                setText(cell, this.view.numberText(tag, us === null || !one ? null : valueAt(one, us)));
         }
     }
 }

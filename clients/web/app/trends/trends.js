@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Trends of up to eight tags: recorded values over a relative or absolute time range, with zoom and pan. Plot draws the curves,
 // two units to a chart; TrendTable shows numbers.
-import { decimalsFor, unitText, zoneClock, zoneOf } from '../../core/format.js';
+import { decimalsOf, numberText, timeOrDay, unitText, zoneClock, zoneOf } from '../../core/format.js';
 import { ask, BAD, gaps } from '../../core/history.js';
 import { fieldText } from '../../core/instant.js';
 import { travel } from '../../core/requests.js';
@@ -140,9 +140,8 @@ export class Trends {
         return unitText(tag.unit || this.session.model.group(tag.group)?.unit);
     }
 
-    decimalsOf(tag) {
-        const group = this.session.model.group(tag.group);
-        return group ? decimalsFor(group.max - group.min) : 2;
+    numberText(tag, value) {
+        return numberText(value ?? null, decimalsOf(this.session.model.group(tag.group), value));
     }
 
     setFocus(tag) {
@@ -559,10 +558,10 @@ export class Trends {
             return;
         this.plots.forEach((plot) => plot !== from && plot.follow(us));
         this.table.point(us, this.series);
-        const { date, time } = us === null ? {} : this.clock(us / 1000);
+        const { date, time } = us === null ? {} : this.clock(us / 1000), near = (raised) => timeOrDay(this.clock, raised / 1000, us / 1000);
         const alarms = us === null ? [] : this.plots.flatMap((plot) => plot.alarmsNear(us));
         setText(byId('trend-at'), us === null ? '' : [`${date} ${time}`, ...alarms.map(({ us: raised, tag, kind }) =>
-            say('trends.raised', { alarm: `${tag} ${say(`kind.${kind}`)}`, time: this.clock(raised / 1000).time }))].join(' · '));
+            say('trends.raised', { alarm: `${tag} ${say(`kind.${kind}`)}`, time: near(raised) }))].join(' · '));
     }
 
     async save() {

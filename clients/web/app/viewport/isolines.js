@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Writes values along isolines where no other label is, and draws arrows. Loaded when there are isolines or arrows.
-import { decimalsFor, shortNumberText } from '../../core/format.js';
+import { decimalsOf, shortNumberText } from '../../core/format.js';
+import { halfAt } from '../../core/nearest.js';
 import { Arrows } from './arrows.js';
 import { INK } from './overlay.js';
 
@@ -19,14 +20,16 @@ export class Isolines {
         if (!picture || shown.show === 'operator')
             return;
         const { fullWidth, shownWidth, fullHeight } = picture, scale = [overlay.wide / shownWidth, overlay.high / fullHeight];
-        const [min, max] = this.session.range, taken = [...blocked];
+        const taken = [...blocked];
         overlay.setFont(600);
         c.textBaseline = 'middle';
         c.textAlign = 'center';
         const moved = picture.moved ?? ((...at) => at);
         const labels = (this.session.markersOf(picture.seq)?.isolines ?? []).map(([value, ...at]) => ({ value, at: moved(...at) }))
-            .filter(({ at }) => at).map(({ value, at: [px, py] }) => ({ text: shortNumberText(value, decimalsFor(max - min)),
-                x: (px + (shownWidth - fullWidth) / 2) * scale[0], y: py * scale[1] }));
+            .filter(({ at }) => at).map(({ value, at: [px, py] }) => {
+                const x = px + (shownWidth - fullWidth) / 2, of = this.session.scaleOf(halfAt(shown, shownWidth, x).params);
+                return { text: shortNumberText(value, decimalsOf(of, value)), x: x * scale[0], y: py * scale[1] };
+            });
         for (const { text, x, y } of labels) {
             const wide = c.measureText(text).width + 6, box = { left: x - wide / 2, right: x + wide / 2, top: y - 8, bottom: y + 8, text };
             const meets = (o) => box.left < o.right && o.left < box.right && box.top < o.bottom && o.top < box.bottom;

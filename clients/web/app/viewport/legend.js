@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The legend of the picture: the server's colours with units, limits, and the patterns for missing data.
-import { decimalsFor, quantityText, shortNumberText, unitText } from '../../core/format.js';
+import { decimalsFor, shortNumberText, unitText } from '../../core/format.js';
 import { colourOf, edges, LIMIT_BANDS, placeOf, scaleTicks, spread, valueAt } from '../../core/legend.js';
+import { quantityText } from '../../core/model.js';
 import { hatchAt, patternPeriodPx, ruleAt, stippleAt } from '../../core/patterns.js';
 import { say } from '../../core/words.js';
 import { make, makeSvg, phone, setVariable } from '../common/dom.js';
@@ -91,6 +92,8 @@ export class Legend {
         this.shown = '';
         this.long = 240; // length of the legend's colour bar in CSS pixels
         new ResizeObserver(() => this.fit()).observe(element);
+        // the plant may have other limits, units and colours than before; `params` follows
+        session.on('welcome', () => { this.shown = ''; });
         for (const name of ['params', 'shown', 'proofs'])
             session.on(name, () => this.show());
         onPixelRatio(() => this.show(true));

@@ -3,7 +3,7 @@
 import { ALARM_COLOURS, isGone } from '../../core/alarms.js';
 import { projector } from '../../core/camera.js';
 import { thinOut } from '../../core/declutter.js';
-import { changeText, decimalsFor, numberText, unitText } from '../../core/format.js';
+import { changeText, decimalsOf, numberText, unitText } from '../../core/format.js';
 import { halves } from '../../core/split_view.js';
 import { FIRST_FAR, leaderLine, MOST_BAD, placeLabels, RANK_RING } from '../../core/labels.js';
 import { say } from '../../core/words.js';
@@ -243,17 +243,17 @@ export class Overlay {
         const held = alarm && reading.quality === 'bad' && this.callouts?.held(tag, alarm);
         if (held)
             return [...parts, ...held];
-        const group = this.session.model.group(tag.group), decimals = decimalsFor(group.max - group.min);
+        const group = this.session.model.group(tag.group);
         if (distance_m !== false) {
             if (distance_m !== null)
                 parts.push([`${numberText(distance_m, 2)}\u202fm`, 650, INK]);
         } else if (change !== false && reading.quality !== 'bad') {
-            parts.push([changeText(change, decimals), ...(this.fresh ? [650, INK] : [400, INK_2])]);
+            parts.push([changeText(change, decimalsOf(group, change)), ...(this.fresh ? [650, INK] : [400, INK_2])]);
             parts.push([change === null ? '' : unitText(tag.unit || group.unit), 400, INK_2]);
         } else if (reading.value === null || reading.quality === 'bad') {
             parts.push([say('novalue'), 400, INK_2]);
         } else {
-            parts.push([numberText(reading.value, decimals), ...(this.fresh ? [650, INK] : [400, INK_2])]);
+            parts.push([numberText(reading.value, decimalsOf(group, reading.value)), ...(this.fresh ? [650, INK] : [400, INK_2])]);
             parts.push([unitText(tag.unit || group.unit), 400, INK_2]);
         }
         if (alarm)

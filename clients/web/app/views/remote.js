@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Controls a control room's video wall from a user's desk: sends the current view to a pane (an area) of the wall, makes the
 // pane keep a view until further notice, and points at a position in the plant.
-import { quantityText, zoneClock } from '../../core/format.js';
+import { zoneClock } from '../../core/format.js';
 import { ask } from '../../core/history.js';
+import { quantityText } from '../../core/model.js';
 import { textOf, viewOf } from '../../core/named_views.js';
 import { refusalText } from '../../core/refusals.js';
 import { askPick } from '../../core/requests.js';

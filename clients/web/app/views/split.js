@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Split view: the same view twice, with a bar over the right half that chooses what the right half shows.
-import { quantityText, title } from '../../core/format.js';
-import { say } from '../../core/words.js';
+import { quantityText } from '../../core/model.js';
+import { say, title } from '../../core/words.js';
 import { fillSelect } from '../common/choices.js';
 import { byId, icon, make } from '../common/dom.js';
 import { distances, interpolations } from '../common/number_fields.js';

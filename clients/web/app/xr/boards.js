@@ -3,9 +3,10 @@
 // markers.
 import { ALARM_COLOURS, isGone } from '../../core/alarms.js';
 import { RADIANS } from '../../core/camera.js';
-import { ageText, decimalsFor, numberText, quantityText, shortNumberText, unitText, zoneClock } from '../../core/format.js';
+import { ageText, decimalsFor, decimalsOf, numberText, shortNumberText, unitText, zoneClock } from '../../core/format.js';
 import { simulatedText } from '../../core/health.js';
 import { colourOf, edges, LIMIT_BANDS, placeOf, scaleTicks, valueAt } from '../../core/legend.js';
+import { quantityText } from '../../core/model.js';
 import { hatchAt, stippleAt } from '../../core/patterns.js';
 import { statusText } from '../../core/quality.js';
 import { travel } from '../../core/requests.js';
@@ -134,7 +135,7 @@ export function showLegend(board, session, state, warning, now) {
     const late = isGrave ? warning[0] : isBehind ? say('status.behind', { n: (behindMs / 1000).toFixed(1) }) : '';
     const note = late || simulatedText(session) || state.words, isGood = !late && ['live', 'simulated'].includes(state.kind);
     const key = JSON.stringify([title, data, note, params.colormap, params.ramp_interval, params.breaks, params.isolines, params.scale,
-        session.rangeOf(params), params.show, hasField]);
+        session.rangeOf(params), params.show, hasField, session.model.plant.configuration]);
     return board.show(key, (c, width, height) => {
         paper(c, width, height);
         write(c, title, 24, 46, 560, { weight: 600 });
@@ -203,16 +204,16 @@ export function showWrist(board, session, pointed, leave) {
 export function cardLines(session, picked, now) {
     const { model } = session, tag = picked.sensor ? model.tag(picked.sensor) : null, asset = model.asset(tag?.asset ?? picked.asset);
     const named = asset ? [asset.tag || asset.id, asset.description].filter(Boolean).join(', ') : '';
-    const [min, max] = session.range, decimals = decimalsFor(max - min);
     if (!tag) {
+        const scale = session.scaleOf(session.params), number = (x) => numberText(x, decimalsOf(scale, x));
         const { value, unit, state, place, uncertain, nearest } = picked, found = say(`place.${place ?? state}`);
-        const text = value === null ? null : `${numberText(value, decimals)} ${unitText(unit)}`;
+        const text = value === null ? null : `${number(value)} ${unitText(unit)}`;
         return [[named, 52, 600], text && [text, 84, 700], [uncertain ? say('place.uncertain', { state: found }) : found, 52, 400],
-            ...nearest.slice(0, 2).map((one) => [`${one.tag}  ${numberText(one.value, decimals)}`, 52, 400])].filter(Boolean);
+            ...nearest.slice(0, 2).map((one) => [`${one.tag}  ${number(one.value)}`, 52, 400])].filter(Boolean);
     }
     const reading = model.readings[tag.index], group = model.group(tag.group), alarm = model.alarms.gravest(tag.index);
-    const own = group ? decimalsFor(group.max - group.min) : 2;
-    const value = reading.value === null ? say('card.novalue') : `${numberText(reading.value, own)} ${unitText(tag.unit || group?.unit)}`;
+    const value = reading.value === null ? say('card.novalue')
+        : `${numberText(reading.value, decimalsOf(group, reading.value))} ${unitText(tag.unit || group?.unit)}`;
     return [[tag.name, 60, 700], tag.description && [tag.description, 52, 400], [value, 84, 700],
         [`${statusText(reading.quality, reading.qualityName)}, ${ageText(model.ageMs(tag.index, now))}`, 52, 400],
         alarm && [`${say(`card.${alarm.kind}`)}, ${say(`state.${alarm.state}`)}`, 52, 700, ALERT],
