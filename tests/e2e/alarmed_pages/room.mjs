@@ -322,7 +322,7 @@ test('a card is never under a panel; a pressed sensor\'s card replaces a panel t
 
 // In a split view, the left half's legend lies near the middle of the picture, so that there may be little room on either side of it.
 test('no legend hides the card of a sensor in a split view without open panels', options, async () => {
-    for (const [width, height] of [[1024, 768], [740, 560]])
+    for (const [width, height] of sweep([[1024, 768], [740, 560]], [[740, 560]]))
         await withPage(`${url}?lang=de`, { viewport: { width, height } }, async (page) => {
             await waitForPicture(page);
             await arrive(page);
@@ -481,7 +481,8 @@ for (const [zoom, viewport] of Object.entries(ZOOMED))
     });
 
 // Sizes of phones, tablets, desks and zoomed desks in CSS pixels.
-const SIZES = [[1280, 800], [1024, 768], [768, 1024], [640, 400], [390, 844], [844, 390], [667, 375], [360, 640], [320, 256]];
+const SIZES = sweep([[1280, 800], [1024, 768], [768, 1024], [640, 400], [390, 844], [844, 390], [667, 375], [360, 640], [320, 256]],
+    [[1280, 800], [768, 1024], [667, 375], [360, 640], [320, 256]]);
 const setField = (page, fields) => page.evaluate((all) => {
     for (const [id, value] of Object.entries(all)) {
         document.getElementById(id).value = value;
