@@ -8,6 +8,7 @@ import {
     ageText, changeText, decimalsFor, decimalsOf, numberText, shortNumberText, timeOrDay, unitText, zoneClock,
 } from '../../clients/web/core/format.js';
 import { Legend } from '../../clients/web/app/viewport/legend.js';
+import { behindText } from '../../clients/web/core/health.js';
 import { halfAt, nearestMarker } from '../../clients/web/core/nearest.js';
 import { halves } from '../../clients/web/core/split_view.js';
 import {
@@ -229,6 +230,14 @@ test('latency is measured from an input to the first picture that shows it, as t
     latency.drawn(3, 150);
     assert.equal(latency.inputs.size, 0);
     assert.equal(latency.behindMs(9000), 0);
+});
+
+test('the page states the delay of a picture that is more than 0.5 s older than the camera', () => {
+    const latency = new LatencyMeter();
+    latency.sent(1, 100);
+    assert.deepEqual([600, 601, 1400].map((now) => behindText(latency, now)), ['', '0.5 s behind', '1.3 s behind']);
+    latency.drawn(1, 1500);
+    assert.equal(behindText(latency, 9000), '');
 });
 
 test('a view written to the address is read back unchanged', () => {

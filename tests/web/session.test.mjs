@@ -505,6 +505,25 @@ test('a frame has the depth grids that it refers to, of both halves or of none',
     assert.equal(session.depth, null, 'depth grids of the old connection are dropped');
 });
 
+test('the depth grid of a left half is dropped if its right half does not come', () => {
+    const { session, socket } = greeted(), frame = vectorBytes('frame/jpeg-key.bin'), seen = [];
+    frame[2] |= 128; // a depth grid belongs to the frame
+    session.on('frame', ({ depth }) => seen.push(depth?.messages ?? null));
+    const send = (seq, more) => {
+        const bytes = Uint8Array.from([2, 2, more ? 2 : 0, 0, 0, 0, 0, 0, seq, 0, 0, 0]);
+        socket.sayBytes(bytes);
+        return bytes;
+    };
+    send(1, true);
+    socket.sayBytes(frame);
+    const whole = send(2, false);
+    socket.sayBytes(frame);
+    send(3, true);
+    const halves = [send(4, true), send(4, false)];
+    socket.sayBytes(frame);
+    assert.deepEqual(seen, [null, [whole], halves]);
+});
+
 test('a follower shows the leader\'s parameters and camera until the follower moves', () => {
     const { session, socket, clock } = greeted();
     session.follow(12);

@@ -2,16 +2,19 @@
 // Decoding of depth grids, and drawing a picture as seen by another camera with the mesh that a grid gives. The test scene is a
 // floor and a box in front of a background.
 import assert from 'node:assert/strict';
+import { readdirSync, readFileSync } from 'node:fs';
 import { mock, test } from 'node:test';
 import { deflateRawSync } from 'node:zlib';
+import { PICTURE } from '../../clients/web/app/picture/painters/gl_painter.js';
 import { hasViewportShape, Warp } from '../../clients/web/app/picture/warp.js';
 import { ClipGizmo } from '../../clients/web/app/views/clip_gizmo.js';
+import { Arrows } from '../../clients/web/app/viewport/arrows.js';
 import { Isolines } from '../../clients/web/app/viewport/isolines.js';
 import { projector } from '../../clients/web/core/camera.js';
 import { sight } from '../../clients/web/core/camera_moves.js';
-import { decodeGrid, readHeader } from '../../clients/web/core/depth_grid.js';
+import { decodeGrid, fitPicture, readHeader } from '../../clients/web/core/depth_grid.js';
 import { along } from '../../clients/web/core/vector.js';
-import { depthAt, FAR, FLOATS, isNear, meshOf, moveBy, NEAR, warpMatrix } from '../../clients/web/core/warp_mesh.js';
+import { depthAt, FAR, FLOATS, goneAfter, isNear, meshOf, moveBy, NEAR, warpMatrix } from '../../clients/web/core/warp_mesh.js';
 import { Layers, Raster } from '../../clients/web/core/warp_raster.js';
 import { mockTimeouts } from './older_node.mjs';
 
@@ -258,6 +261,21 @@ test('an invalid depth grid is refused, whatever its content', async () => {
     assert.equal(readHeader(bytes).seq, 7);
 });
 
+test('depth grids of another size, projection or half do not fit a picture', () => {
+    const frame = { camera: PERSPECTIVE, fullWidth: 641, fullHeight: 360 };
+    const whole = { x: 0, y: 0, width: 641, height: 360, fullWidth: 641, fullHeight: 360, parallel: false };
+    const left = { ...whole, width: 320 }, right = { ...whole, x: 320, width: 321 };
+    const orthographic = { ...frame, camera: { ...PERSPECTIVE, fov: 0, height_m: 8 } };
+    for (const grids of [[whole], [left, right]])
+        assert.equal(fitPicture(grids, frame), true);
+    assert.equal(fitPicture([{ ...whole, parallel: true }], orthographic), true);
+    for (const grids of [[], [left], [right], [right, left], [left, whole], [left, left, right], [whole, right],
+        [{ ...whole, parallel: true }], [left, { ...right, parallel: true }], [{ ...whole, fullWidth: 640 }],
+        [{ ...whole, fullHeight: 361 }], [{ ...whole, y: 1, height: 359 }]])
+        assert.equal(fitPicture(grids, frame), false, JSON.stringify(grids));
+    assert.equal(fitPicture([whole], orthographic), false);
+});
+
 test('after a jump or a change of projection, the camera gets no warped picture', () => {
     const turned = { ...PERSPECTIVE, eye: [-6, -9, 5] };
     assert.ok(isNear(PERSPECTIVE, { ...PERSPECTIVE, eye: [6.3, -8.7, 5] }));
@@ -348,6 +366,26 @@ test('only a picture that lags behind the user\'s own camera is warped: no fligh
         assert.equal(ahead(plain).isWanted, false, JSON.stringify(plain));
 });
 
+test('after a movement, the server\'s picture of the same camera replaces the warped one in 80 ms', () => {
+    assert.deepEqual([0, 40, 79, 80, 500].map(goneAfter), [0, 0.5, 79 / 80, 1, 1]);
+    const canvas = { style: { display: '' } }, painted = { picture: {}, seenFrom: PERSPECTIVE }, steps = [];
+    let frames = 0;
+    const picture = { ...ahead().session.picture, camera: PERSPECTIVE, cameraSeq: 2, moved: () => null };
+    const warp = Object.assign(ahead({ picture }), { canvas, isShown: true, held: null, painted, loaded: painted, grids: [],
+        fadeStart: null, viewport: { invalidate: () => frames++ }, paint: (camera, source, gone) => steps.push([camera, source, gone]) });
+    warp.draw(1000);
+    warp.draw(1040);
+    assert.equal(frames, 2, 'each step asks for the next frame');
+    assert.deepEqual(steps, [[PERSPECTIVE, painted, 0], [PERSPECTIVE, painted, 0.5]]);
+    assert.deepEqual([picture.moved, canvas.style.display], [null, ''], 'markers are at their places in the server\'s picture');
+    assert.deepEqual([warp.draw(1080), warp.isShown, canvas.style.display, steps.length, frames], [true, false, 'none', 2, 2]);
+    Object.assign(warp, { isShown: true });
+    warp.draw(2000);
+    assert.equal(steps.at(-1)[2], 0, 'the next movement ends with a fade of its own');
+    warp.session.cameraSeq = 3;
+    assert.deepEqual([warp.draw(2040), warp.isShown], [true, false], 'no fade while the camera moves');
+});
+
 test('if a picture comes without depth, or its depth cannot be decoded, the page stops warping', () => {
     for (const grid of [null, { messages: [] }]) {
         const canvas = { style: { display: '' } }, picture = { ...ahead().session.picture, camera: PERSPECTIVE, depth: grid };
@@ -372,4 +410,61 @@ test('values on contour lines and handles of a section move with a warped pictur
         const [{ project }] = get.call({ session: { ...session, picture: { ...picture, camera } }, viewport });
         assert.deepEqual(project([1, 1, 2]), projector(camera, 800, 600)([1, 1, 2]).slice(0, 2));
     }
+});
+
+test('arrows and streaks move with a warped picture', () => {
+    const moved = (x, y) => (x < 400 ? [x + 30, y - 20] : null), places = [], streaks = [], done = () => {};
+    const picture = { fullWidth: 800, fullHeight: 600, shownWidth: 800, moved };
+    const context = { save: done, restore: done, rotate: done, translate: (...at) => places.push(at) };
+    const rows = [[100, 200, 0, 0, 50, 0, 0, null], [500, 200, 0, 0, 50, 0, 0, null], [200, 300, 1, 0, 50, 0, 0, 7]];
+    const session = { picture, shown: {}, rangeOf: () => [0, 100], markersOf: () => ({ arrows: rows }) };
+    const arrows = Object.assign(Object.create(Arrows.prototype), { session, overlay: { context, wide: 400, high: 300 }, still: {},
+        stroke: done, run: done, explain: done, addToStroke: ({ at }) => streaks.push(at) });
+    globalThis.Path2D = class {};
+    try {
+        arrows.draw();
+    } finally {
+        delete globalThis.Path2D;
+    }
+    assert.deepEqual([places, streaks], [[[65, 90]], [[115, 140]]], 'an arrow whose place has left the picture is not drawn');
+});
+
+// Returns the colours of a map in shaders/maps as [[red, green, blue], ...].
+const MAPS = new URL('../../shaders/maps/', import.meta.url);
+const coloursOf = (file) => readFileSync(new URL(file, MAPS), 'utf8').split('\n').filter((line) => /^\d/.test(line))
+    .map((line) => line.split(',').map(Number));
+
+test('pixels that the shader mixes change a value by at most 4.3 % of the range, in every colour map', () => {
+    const limit = (name) => Math.floor(Number(PICTURE.match(new RegExp(`\\b${name} = ([\\d.]+) / 255`))[1]));
+    const LIKE_HUE = limit('LIKE_HUE'), LIKE = limit('LIKE'), worst = {};
+    const areAlike = (a, b) => {
+        const [red, green, blue] = [0, 1, 2].map((c) => a[c] - b[c]);
+        return Math.abs(red - green) <= LIKE_HUE && Math.abs(green - blue) <= LIKE_HUE
+            && Math.max(Math.abs(red), Math.abs(green), Math.abs(blue)) <= LIKE;
+    };
+    for (const file of readdirSync(MAPS).filter((name) => name.endsWith('.csv') && name !== 'operator.csv')) {
+        const map = coloursOf(file);
+        assert.equal(map.length, 256, file);
+        const valueOf = (colour) => {
+            let best = 0, least = Infinity;
+            for (let i = 0; i < 256; i++) {
+                const by = (map[i][0] - colour[0]) ** 2 + (map[i][1] - colour[1]) ** 2 + (map[i][2] - colour[2]) ** 2;
+                if (by < least)
+                    [best, least] = [i, by];
+            }
+            return best;
+        };
+        worst[file] = 0;
+        for (let i = 0; i < 256; i++)
+            for (let j = i + 1; j < 256; j++)
+                for (let part = 1; part < 8 && areAlike(map[i], map[j]); part++) {
+                    const at = valueOf(map[i].map((v, c) => Math.round(v + (map[j][c] - v) * part / 8)));
+                    worst[file] = Math.max(worst[file], Math.min(Math.abs(at - i), Math.abs(at - j)) / 255);
+                }
+    }
+    assert.ok(Object.values(worst).length >= 6 && Object.values(worst).every((part) => part <= 0.0435), JSON.stringify(worst));
+    // grey within the limits L and H
+    const isWithin = ([red, green, blue]) => red === green && green === blue, states = coloursOf('operator.csv');
+    assert.ok(states.every((a) => states.every((b) => isWithin(a) && isWithin(b) || a.join() === b.join() || !areAlike(a, b))),
+        'states are never mixed');
 });

@@ -149,6 +149,19 @@ export function readGrid(header, bytes) {
     return { ...header, payload: null, near, far, masks: readMasks(header, bytes, codes) };
 }
 
+// Returns true if depth grids (of a whole picture, or of the left and then the right half of a split view) belong to a picture: they have
+// the picture's size and projection, and cover it.
+export function fitPicture(grids, { camera, fullWidth, fullHeight }) {
+    let right = 0;
+    for (const grid of grids) {
+        if (grid.fullWidth !== fullWidth || grid.fullHeight !== fullHeight || grid.parallel !== (camera.fov === 0)
+            || grid.x !== right || grid.y !== 0 || grid.height !== fullHeight)
+            return false;
+        right += grid.width;
+    }
+    return right === fullWidth;
+}
+
 async function inflate(payload, most) {
     const reader = new Blob([payload]).stream().pipeThrough(new DecompressionStream('deflate-raw')).getReader();
     const bytes = new Uint8Array(most);

@@ -3,6 +3,15 @@
 import { ageText, zoneClock } from './format.js';
 import { say, title } from './words.js';
 
+// age in milliseconds of the oldest camera move whose picture is not drawn yet above which the page states the delay
+const BEHIND_MS = 500;
+
+// Returns a text with the delay of the picture on the screen; '' if the delay is short. latency: LatencyMeter (meters.js).
+export function behindText(latency, now) {
+    const ms = latency.behindMs(now);
+    return ms > BEHIND_MS ? say('status.behind', { n: (ms / 1000).toFixed(1) }) : '';
+}
+
 const seconds = (ms) => say('age.s', { n: Math.max(1, Math.ceil(ms / 1000)) });
 
 // Returns { kind, words, detail, banner }. words: short text about the state. detail: sentence with the reason; '' if there is none.

@@ -79,7 +79,8 @@ export class Session {
         this.followers = { count: 0, sessions: [], names: [] }; // sessions that follow this one
         // true: asks the server for depth grids, which let the page show a picture from another camera
         this.wantsDepth = false;
-        // newest depth grids: { messages (binary), more (true: the grid of the split view's other half has not arrived) }
+        // newest depth grids: { messages (binary), more (true: the grid of the split view's other half has not arrived), seq (text that
+        // differs between pictures) }
         this.depth = null;
         this.forget();
         // the instant shown, as the server reports it; atUs null: the present; fromUs: start of the recorded history, null: none
@@ -94,9 +95,10 @@ export class Session {
         connection.onText = (text) => (this.unheard ? this.unheard.push([this.now(), text]) : this.hear(text));
         connection.onBytes = (bytes) => this.guard(() => {
             this.freshen();
-            const grid = depthGridOf(bytes);
+            const grid = depthGridOf(bytes), { depth } = this;
+            // a left half whose right half has not arrived is dropped when the grid of another picture arrives
             if (grid)
-                this.depth = { ...grid, messages: [...(this.depth?.more ? this.depth.messages : []), bytes] };
+                this.depth = { ...grid, messages: [...(depth?.more && depth.seq === grid.seq ? depth.messages : []), bytes] };
             else if (!isGivenUp(bytes))
                 this.receive(decodeFrame(bytes));
         });

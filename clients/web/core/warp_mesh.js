@@ -244,6 +244,11 @@ export function moveBy(matrix, { width, height }, point) {
     return w > 0 ? [(x / w + 1) * width / 2, (1 - y / w) * height / 2] : null;
 }
 
+const FADE_MS = 80; // time in which a warped picture fades to the server's picture of the same camera
+
+// Returns the fraction of the warped picture's pixels that are left out, `ms` milliseconds after the fade began; 1: the fade is over.
+export const goneAfter = (ms) => Math.min(1, ms / FADE_MS);
+
 const MOST_TURN = Math.cos(50 * RADIANS), MOST_STEP = 0.8, MOST_ZOOM = 2.5;
 
 // Returns true if a picture from one camera may be shown from another. It may not after a large jump of the camera, nor if one

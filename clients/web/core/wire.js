@@ -3,19 +3,14 @@
 // headers.
 
 export const SUBPROTOCOL = 'plantcast.v1';
-const FRAME_HEADER_BYTES = 112;
-const MAX_SIDE_PX = 8192;
-const MAX_PIXELS = 16 * 1024 * 1024;
-const MIN_SIDE_PX = 16;
-const NO_AGE = 0xffffffff;
+const FRAME_HEADER_BYTES = 112, MAX_PAYLOAD_BYTES = 64 * 1024 * 1024, NO_AGE = 0xffffffff;
+const MIN_SIDE_PX = 16, MAX_SIDE_PX = 8192, MAX_PIXELS = 16 * 1024 * 1024;
 export const CODECS = { 1: 'jpeg', 2: 'png', 3: 'h264' };
 const FLAG_KEY = 1, FLAG_STILL = 2, FLAG_NO_LIVE_DATA = 4, FLAG_MORE = 8, FLAG_DATA = 16, FLAG_PAST = 32, FLAG_DEPTH = 128;
 // message type of a depth grid; flag in its header: the grid of the split view's other half follows
 const DEPTH_GRID = 2, FLAG_OTHER_HALF = 2;
-const MAX_PAYLOAD_BYTES = 64 * 1024 * 1024;
 
-class WireError extends Error {}
-export { WireError };
+export class WireError extends Error {}
 
 function need(condition, what) {
     if (!condition)
@@ -88,11 +83,11 @@ export function isGivenUp(bytes) {
     return there >= 0 && new DataView(data.buffer, data.byteOffset, data.length).getUint32(4, true) > there;
 }
 
-// Returns null if the message is not a depth grid, else { more }: true if the grid of the split view's other half follows.
-// core/depth_grid.js parses the rest.
+// Returns null if the message is not a depth grid, else { more (true: the grid of the split view's other half follows), seq (text that
+// differs between pictures) }. core/depth_grid.js parses the rest.
 export function depthGridOf(bytes) {
-    const [type, , flags] = new Uint8Array(bytes, 0, Math.min(3, bytes.byteLength));
-    return type === DEPTH_GRID ? { more: (flags & FLAG_OTHER_HALF) !== 0 } : null;
+    const [type, , flags, , , , , , ...seq] = new Uint8Array(bytes, 0, Math.min(12, bytes.byteLength));
+    return type === DEPTH_GRID ? { more: (flags & FLAG_OTHER_HALF) !== 0, seq: `${seq}` } : null;
 }
 
 // Returns true if the frame covers the whole picture, so that nothing of the previous one remains.

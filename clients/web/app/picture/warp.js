@@ -4,7 +4,7 @@
 // light as their surroundings, never coloured; wide ones get a lattice. Loaded together with the camera controller.
 import { same } from '../../core/camera.js';
 import { hasGpu } from '../../core/gpu.js';
-import { depthAt, isNear, moveBy, warpMatrix } from '../../core/warp_mesh.js';
+import { depthAt, goneAfter, isNear, moveBy, warpMatrix } from '../../core/warp_mesh.js';
 import { isWhole } from '../../core/wire.js';
 import { make } from '../common/dom.js';
 import { CpuPainter } from './painters/cpu_painter.js';
@@ -20,7 +20,6 @@ const SLOW_MS = 26, SLOW_COUNT = 8, PAUSE_MS = 150, LEAST_PX = 250000;
 // of the server then leave the processor more time to warp them.
 const SEND_MS = 80;
 
-const FADE_MS = 80; // time in milliseconds in which the warped picture fades to the server's picture
 const LATE_MS = 1000; // if the worker that decodes depth grids is silent for this long, pictures are shown without waiting for it
 
 const LATTICE_PX = 14;
@@ -159,8 +158,8 @@ export class Warp {
     }
 
     // Draws the newest picture from the present camera, or shows the unwarped picture. Called once per animation frame, after new pictures
-    // were drawn. Returns true if the screen changes.
-    draw() {
+    // were drawn. now: time in milliseconds. Returns true if the screen changes.
+    draw(now = performance.now()) {
         const { session } = this, { picture, camera } = session;
         if (!picture)
             return false;
@@ -172,7 +171,7 @@ export class Warp {
             this.source = { picture, camera: picture.ownCamera, parts: known.parts };
         try {
             if (!this.isWanted || !this.load())
-                return !this.fade() && (this.hide() || this.loadEarly());
+                return !this.fade(now) && (this.hide() || this.loadEarly());
             if (this.isShown && this.painted === this.source && same(camera, picture.camera))
                 return false;
             this.paint(camera, this.source, 0);
@@ -202,15 +201,15 @@ export class Warp {
     }
 
     // Fades from the warped picture to the server's picture of the same camera. Returns false if the fade is complete, or not possible.
-    fade() {
-        const { session: { picture }, painted, isShown, viewport } = this, now = performance.now();
+    fade(now) {
+        const { session: { picture }, painted, isShown, viewport } = this;
         if (!isShown || painted !== this.loaded || painted.picture === picture || this.isAhead)
             return false;
         this.putHeld();
         Object.assign(picture, { camera: picture.ownCamera, moved: null });
         this.fadeStart ??= now;
-        const gone = (now - this.fadeStart) / FADE_MS;
-        if (gone >= 1)
+        const gone = goneAfter(now - this.fadeStart);
+        if (gone === 1)
             return false;
         this.paint(painted.seenFrom, painted, gone);
         viewport.invalidate();

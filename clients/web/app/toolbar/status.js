@@ -2,13 +2,10 @@
 // Status bar, connection state and banner, always visible as text. Between the server's messages, values age by the page's own
 // clock.
 import { ageText, zoneClock } from '../../core/format.js';
-import { health, simulatedText } from '../../core/health.js';
+import { behindText, health, simulatedText } from '../../core/health.js';
 import { say } from '../../core/words.js';
 import { clock } from '../common/clock.js';
 import { byId, make, setText, setVariable } from '../common/dom.js';
-
-// age in milliseconds of the oldest camera move whose picture is not drawn yet above which the status bar mentions the delay
-export const BEHIND_MS = 500;
 
 export class Status {
     // onFreshness(isFresh) is called when the server falls silent (isFresh false: shown values may be outdated), and when its messages
@@ -94,12 +91,9 @@ export class Status {
         const quiet = say(['live', 'simulated', 'partial'].includes(kind) ? 'status.still' : 'none');
         setText(byId('rate'), rate > 0 ? say('status.rate', { count: Math.round(rate) }) : quiet);
         const latency = session.latency.median(now);
-        const behind = session.latency.behindMs(now);
-        byId('latency').parentElement.classList.toggle('late', behind > BEHIND_MS);
-        if (behind > BEHIND_MS)
-            setText(byId('latency'), say('status.behind', { n: (behind / 1000).toFixed(1) }));
-        else
-            setText(byId('latency'), latency === null ? '–' : say('status.ms', { n: Math.round(latency) }));
+        const behind = behindText(session.latency, now);
+        byId('latency').parentElement.classList.toggle('late', behind !== '');
+        setText(byId('latency'), behind || (latency === null ? '–' : say('status.ms', { n: Math.round(latency) })));
         const { picture } = session;
         if (picture)
             setText(byId('size'), `${picture.fullWidth}×${picture.fullHeight} ${picture.codec.toUpperCase()}`);

@@ -4,7 +4,7 @@
 import { ALARM_COLOURS, isGone } from '../../core/alarms.js';
 import { RADIANS } from '../../core/camera.js';
 import { ageText, decimalsFor, decimalsOf, numberText, shortNumberText, unitText, zoneClock } from '../../core/format.js';
-import { simulatedText } from '../../core/health.js';
+import { behindText, simulatedText } from '../../core/health.js';
 import { colourOf, edges, LIMIT_BANDS, placeOf, scaleTicks, valueAt } from '../../core/legend.js';
 import { quantityText } from '../../core/model.js';
 import { hatchAt, stippleAt } from '../../core/patterns.js';
@@ -12,7 +12,6 @@ import { statusText } from '../../core/quality.js';
 import { travel } from '../../core/requests.js';
 import { say } from '../../core/words.js';
 import { make } from '../common/dom.js';
-import { BEHIND_MS } from '../toolbar/status.js';
 import { titleOf } from '../viewport/legend.js';
 
 const PX_PER_DEGREE = 24; // resolution, in pixels per degree of view, of canvases whose apparent size in the headset is fixed
@@ -131,8 +130,7 @@ export function showLegend(board, session, state, warning, now) {
     const age = model.oldestAgeMs(params.group, now), clock = zoneClock(model.plant.time_zone);
     const at = past ? clock((picture?.past ? picture.dataTimeUs : session.time.atUs) / 1000) : null;
     const data = at ? `${at.date} ${at.time}` : `${say('status.oldest')}: ${age === null ? say('none') : ageText(age)}`;
-    const behindMs = session.latency.behindMs(now), isBehind = behindMs > BEHIND_MS, isGrave = warning?.[2] === true;
-    const late = isGrave ? warning[0] : isBehind ? say('status.behind', { n: (behindMs / 1000).toFixed(1) }) : '';
+    const late = warning?.[2] === true ? warning[0] : behindText(session.latency, now);
     const note = late || simulatedText(session) || state.words, isGood = !late && ['live', 'simulated'].includes(state.kind);
     const key = JSON.stringify([title, data, note, params.colormap, params.ramp_interval, params.breaks, params.isolines, params.scale,
         session.rangeOf(params), params.show, hasField, session.model.plant.configuration]);
