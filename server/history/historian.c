@@ -22,6 +22,7 @@
 #include "history/postgres/postgres.h"
 #include "history/recorder.h"
 #include "history/spool.h"
+#include "plant/plant_diff.h"
 #include "value/quality.h"
 
 enum {
@@ -557,14 +558,18 @@ static void note_step(struct historian *historian, int64_t utc_ns, int64_t step_
 }
 
 /* Before the historian of the reloaded plant takes over, ends every tag's recorded line at its newest sample. A tag that the
-   reloaded plant lacks also gets a point without a value, which marks the end of its data. */
+   reloaded plant lacks, or whose values come from elsewhere there, also gets a point without a value, which marks the end of its
+   data. */
 static void end_lines(struct historian *historian, int64_t utc_ns)
 {
     if (!historian->next)
         return;
-    for (size_t i = 0; i < historian->plant->tag_count; i++)
-        if (plant_find_tag(historian->next, historian->plant->tags[i].name) < 0)
+    for (size_t i = 0; i < historian->plant->tag_count; i++) {
+        const struct plant_tag *tag = &historian->plant->tags[i];
+        int next = plant_find_tag(historian->next, tag->name);
+        if (next < 0 || !plant_same_signal(historian->plant, tag, historian->next, &historian->next->tags[next]))
             put(historian, (int)i, &(struct history_point){ utc_ns / 1000, NAN, QUALITY_BAD_NO_COMMUNICATION });
+    }
     recorder_end(historian->recorder, &historian->waiting);
 }
 

@@ -80,10 +80,44 @@ static bool same_place(const struct tag_place *a, const struct tag_place *b)
     return same_text(a->node, b->node) && memcmp(a->position_m, b->position_m, sizeof(a->position_m)) == 0 && a->assumed == b->assumed;
 }
 
+static bool same_sentinels(const struct tag_scale *a, const struct tag_scale *b)
+{
+    bool same = a->sentinel_count == b->sentinel_count;
+    for (int i = 0; same && i < b->sentinel_count; i++) {
+        const struct plant_sentinel *x = &a->sentinels[i], *y = &b->sentinels[i];
+        same = x->is_bits == y->is_bits && (x->is_bits ? x->bits == y->bits : same_number(x->number, y->number));
+    }
+    return same;
+}
+
 static bool same_scale(const struct tag_scale *a, const struct tag_scale *b)
 {
     return a->kind == b->kind && a->raw_low == b->raw_low && a->raw_high == b->raw_high && a->scaled_low == b->scaled_low &&
-           a->scaled_high == b->scaled_high && a->negate == b->negate;
+           a->scaled_high == b->scaled_high && a->negate == b->negate && a->ne43 == b->ne43 && same_sentinels(a, b);
+}
+
+/* The parsed members also show a change of the source's keys that addresses depend on, such as `address_base` or `topic`. */
+static bool same_address(const struct plant *before, const struct plant_tag *a, const struct plant *after, const struct plant_tag *b)
+{
+    const struct tag_signal *x = &a->signal, *y = &b->signal;
+    int unit_a = a->source < 0 ? -1 : plant_tag_modbus_unit(before, a), unit_b = b->source < 0 ? -1 : plant_tag_modbus_unit(after, b);
+    return same_text(x->address, y->address) && same_text(x->topic, y->topic) && same_text(x->path, y->path) && x->element == y->element &&
+           unit_a == unit_b && x->table == y->table && x->register_index == y->register_index && x->bit == y->bit && x->type == y->type &&
+           x->byte_order == y->byte_order;
+}
+
+static bool same_unit(const struct plant_tag *a, const struct plant_tag *b)
+{
+    struct unit_change change;
+    bool changed = a->scale.change.converts != b->scale.change.converts || a->scale.change.factor != b->scale.change.factor ||
+                   a->scale.change.offset != b->scale.change.offset;
+    return !changed && (!a->unit || !b->unit || units_compare(a->unit, b->unit, &change) == UNITS_SAME);
+}
+
+bool plant_same_signal(const struct plant *before, const struct plant_tag *a, const struct plant *after, const struct plant_tag *b)
+{
+    return same_text(source_of(before, a), source_of(after, b)) && same_address(before, a, after, b) && same_scale(&a->scale, &b->scale) &&
+           same_unit(a, b);
 }
 
 static bool same_settings(const struct plant_alarm_settings *a, const struct plant_alarm_settings *b)
@@ -105,9 +139,7 @@ static void compare_tags(struct plant_diff *diff, const struct plant *before, co
 {
     char what[300] = "";
     compare_limits(diff, a, b);
-    bool same_address = same_text(a->signal.address, b->signal.address);
-    add_difference(what, sizeof(what), !same_address || a->signal.type != b->signal.type || a->signal.byte_order != b->signal.byte_order,
-                   "address");
+    add_difference(what, sizeof(what), !same_address(before, a, after, b), "address");
     add_difference(what, sizeof(what), !same_text(source_of(before, a), source_of(after, b)), "source");
     add_difference(what, sizeof(what), !same_text(group_of(before, a), group_of(after, b)), "group");
     add_difference(what, sizeof(what), !same_text(asset_of(before, a), asset_of(after, b)), "asset");

@@ -15,6 +15,10 @@ enum { PLANT_DIFF_LINES = 200 };
 /* Appends a line for each difference between the two plants to out->lines. */
 void plant_diff(const struct plant *before, const struct plant *after, struct plant_diff *out);
 void plant_diff_finish(struct plant_diff *diff);
+/* Returns true if a tag of the plant `before` and a tag of the plant `after` get their values in the same way: from the same source
+   and address, with the same encoding, scaling and unit, or by the same expression. Otherwise, a reading of the one is no
+   reading of the other. */
+bool plant_same_signal(const struct plant *before, const struct plant_tag *a, const struct plant *after, const struct plant_tag *b);
 /* Returns the name (static) of a changed setting that a running daemon cannot apply without a restart; NULL: none. */
 const char *plant_needs_restart(const struct plant *before, const struct plant *after);
 

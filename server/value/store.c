@@ -8,6 +8,8 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "plant/plant_diff.h"
+#include "plant/tags/expression.h"
 #include "value/quality.h"
 
 struct held {
@@ -17,6 +19,9 @@ struct held {
     bool has_value, lost;
     /* true: the tag is lost, and its last value must not be used although it is recent (store_tags_dead()) */
     bool dead;
+    /* true: the reading comes from the plant before a reload, or from a core. The tag's first sample replaces it, however old
+       that sample is. */
+    bool carried;
     int64_t sampled_mono_ns;                   /* monotonic time of the tag's last sample, whether Good or Bad */
     /* arrival time of the tag's last usable value: received_mono_ns: on the monotonic clock; received_utc_ns: in UTC */
     int64_t received_mono_ns, received_utc_ns;
@@ -60,6 +65,12 @@ static int64_t ns_of(double s)
     return s < 9e9 ? (int64_t)(s * 1e9) : INT64_MAX;
 }
 
+static void set_limits(struct held *held, const struct tag_validity *validity)
+{
+    held->stale_ns = ns_of(validity->stale_s);
+    held->flatline_ns = validity->flatline_s > 0 ? ns_of(validity->flatline_s) : INT64_MAX;
+}
+
 static void add_vouched(struct store *store, int tag)
 {
     const struct plant_quality_tag *by = &store->plant->tags[tag].validity.quality;
@@ -75,16 +86,16 @@ struct store *store_create(const struct plant *plant)
     store->plant = plant;
     store->tags = mem_array(plant->tag_count, sizeof(*store->tags));
     store->links = mem_array(plant->source_count, sizeof(*store->links));
-    for (size_t i = 0; i < plant->tag_count; i++)
+    for (size_t i = 0; i < plant->tag_count; i++) {
         store->tags[i] = (struct held){
             .quality = QUALITY_BAD_WAITING,
             .shown_quality = QUALITY_BAD_WAITING,
             .sampled_mono_ns = INT64_MIN,
-            .stale_ns = ns_of(plant->tags[i].validity.stale_s),
-            .flatline_ns = plant->tags[i].validity.flatline_s > 0 ? ns_of(plant->tags[i].validity.flatline_s) : INT64_MAX,
             .first_vouched = -1,
             .next_vouched = -1,
         };
+        set_limits(&store->tags[i], &plant->tags[i].validity);
+    }
     for (size_t i = 0; i < plant->tag_count; i++)
         add_vouched(store, (int)i);
     for (size_t i = 0; i < plant->source_count; i++)
@@ -112,35 +123,49 @@ static int find_source(const struct plant *plant, const char *id)
     return i;
 }
 
-/* Returns true if a tag has the same unit in the old and the new plant. Otherwise the old reading is not taken over; the source
-   will soon send a new one. */
-static bool same_unit(const struct plant_tag *a, const struct plant_tag *b)
+/* Returns true if the tag's reading in the old plant's store is also one in the new plant: the tag gets its values in the same way
+   and, if it is derived, so do the tags in its expression. adopted: by tag: true: the tag's reading has been adopted. */
+static bool keeps_reading(const struct store *store, const struct store *before, size_t tag, const bool *adopted)
 {
-    struct unit_change change;
-    bool changed = a->scale.change.converts != b->scale.change.converts || a->scale.change.factor != b->scale.change.factor ||
-                   a->scale.change.offset != b->scale.change.offset;
-    return !changed && (!a->unit || !b->unit || units_compare(a->unit, b->unit, &change) == UNITS_SAME);
+    const struct plant_tag *now = &store->plant->tags[tag];
+    int was = plant_find_tag(before->plant, now->name);
+    const int *inputs = NULL;
+    size_t count = now->expression ? expression_inputs(now->expression, &inputs) : 0;
+    bool keeps = was >= 0 && plant_same_signal(before->plant, &before->plant->tags[was], store->plant, now);
+    for (size_t i = 0; keeps && i < count; i++)
+        keeps = adopted[inputs[i]];
+    return keeps;
+}
+
+static void adopt_tag(struct store *store, const struct store *before, size_t tag, bool *adopted)
+{
+    struct held *to = &store->tags[tag];
+    const struct held own = *to;
+    adopted[tag] = keeps_reading(store, before, tag, adopted);
+    if (!adopted[tag])
+        return;
+    *to = before->tags[plant_find_tag(before->plant, store->plant->tags[tag].name)];
+    to->carried = true;
+    /* does not take over the alarm of the old reading: limits may have changed, and the alarm service sets the alarm again */
+    to->alarm = own.alarm;
+    to->alarm_status = own.alarm_status;
+    to->stale_ns = own.stale_ns;
+    to->flatline_ns = own.flatline_ns;
+    to->first_vouched = own.first_vouched;
+    to->next_vouched = own.next_vouched;
 }
 
 void store_adopt(struct store *store, struct store *before)
 {
+    const struct plant *plant = store->plant;
+    bool *adopted = mem_array(plant->tag_count, sizeof(*adopted));
     pthread_mutex_lock(&before->lock);
     pthread_mutex_lock(&store->lock);
-    for (size_t i = 0; i < before->plant->tag_count; i++) {
-        int tag = plant_find_tag(store->plant, before->plant->tags[i].name);
-        struct held *to = tag < 0 ? NULL : &store->tags[tag];
-        if (!to || !same_unit(&before->plant->tags[i], &store->plant->tags[tag]))
-            continue;
-        const struct held own = *to;
-        *to = before->tags[i];
-        /* does not take over the alarm of the old reading: limits may have changed, and the alarm service sets the alarm again */
-        to->alarm = own.alarm;
-        to->alarm_status = own.alarm_status;
-        to->stale_ns = own.stale_ns;
-        to->flatline_ns = own.flatline_ns;
-        to->first_vouched = own.first_vouched;
-        to->next_vouched = own.next_vouched;
-    }
+    for (size_t i = 0; i < plant->tag_count; i++)
+        if (!plant->tags[i].expression)
+            adopt_tag(store, before, i, adopted);
+    for (size_t i = 0; i < plant->derived_count; i++)
+        adopt_tag(store, before, (size_t)plant->derived[i], adopted);
     for (size_t i = 0; i < before->plant->source_count; i++) {
         int source = find_source(store->plant, before->plant->sources[i].id);
         if (source >= 0)
@@ -150,6 +175,7 @@ void store_adopt(struct store *store, struct store *before)
     store->has_utc = before->has_utc;
     pthread_mutex_unlock(&store->lock);
     pthread_mutex_unlock(&before->lock);
+    mem_free(adopted);
 }
 
 static void listen(struct store *store, store_listener *listener, void *arg, bool all)
@@ -293,10 +319,14 @@ static bool hold(struct store *store, const struct sample *sample, int64_t now_m
 {
     struct held *held = &store->tags[sample->tag];
     bool bad = quality_is_bad(sample->quality), finite = isfinite(sample->value), value_changed = false;
-    if (now_mono_ns < held->sampled_mono_ns) {
+    if (held->carried) {
+        /* a store of a core's readings had no limits of its own (mirror()) */
+        set_limits(held, &store->plant->tags[sample->tag].validity);
+        held->carried = false;
+    } else if (now_mono_ns < held->sampled_mono_ns) {
         /* Ignores a sample older than the tag's last sample, with one exception: the tag was marked dead (its source was lost),
-           and the sample is not older in UTC than the tag's last value. Then the sample shows that the source is back. */
-        if (!held->dead || !held->has_value || now_utc_ns < held->received_utc_ns)
+           and the sample is not older in UTC than the tag's last value, if any. Then the sample shows that the source is back. */
+        if (!held->dead || now_utc_ns < held->received_utc_ns)
             return false;
         now_mono_ns = held->sampled_mono_ns;
     }
@@ -352,8 +382,9 @@ static void mirror(struct store *store, const struct mirrored *reading, int64_t 
     held->received_utc_ns = reading->received_utc_ns;
     held->sampled_mono_ns = held->changed_mono_ns = now_mono_ns;
     held->lost = held->dead = false;
+    held->carried = true;
     /* a reading that comes from a core (the daemon that reads the devices) never becomes stale in this store: the core decides its
-       quality */
+       quality. If this daemon takes over from that core, the tag's first sample sets the limits again (hold()). */
     held->stale_ns = held->flatline_ns = INT64_MAX;
     if (count_change(store, (size_t)reading->tag, value_changed, now_mono_ns))
         tell_watch(store);

@@ -34,8 +34,9 @@ enum { STORE_LISTENERS = 6 };
 
 struct store *store_create(const struct plant *plant); /* Creates a store for the tags of `plant`, which must outlive the store. */
 void store_destroy(struct store **store);
-/* After a reload: copies readings and link states from the old plant's store, for tags and sources with equal names. Call it before a
-   listener is added. */
+/* After a reload: copies link states of sources with equal names from the old plant's store, and readings of tags with equal
+   names that still get their values in the same way (plant_same_signal()). The first sample of such a tag replaces the copied
+   reading, even if the sample is older. Call it before a listener is added. */
 void store_adopt(struct store *store, struct store *before);
 /* Adds a listener for samples; a store has at most STORE_LISTENERS. */
 void store_listen(struct store *store, store_listener *listener, void *arg);
@@ -66,7 +67,8 @@ struct mirrored {
 };
 /* Writes readings of a core (daemon that reads the devices) instead of samples. Their quality is the core's, and does not
    change as they get older. Listeners are not called. store_link_lost(), store_tags_lost() and store_tags_dead() apply to such
-   readings too. */
+   readings too. Once this daemon has taken over from the core, a tag's first sample from this daemon's own source replaces the
+   core's reading, even if the sample is older; the reading becomes stale again. */
 void store_mirror(struct store *store, const struct mirrored *readings, size_t count, int64_t now_mono_ns);
 /* Records that a source cannot be read from now on. Its tags keep their last values: Uncertain_NoCommunicationLastUsableValue until
    stale_s after their arrival, then Bad_CommunicationError. Tags that never had a value are Bad_NoCommunication. */

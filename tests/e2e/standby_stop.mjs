@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A leading core is shut down properly: it evaluates its last samples, sends them to its standby and hands over the lease.
-// Expected: the journal has each alarm change once, the standby leads at once, and the two never poll at the same time.
+// Expected: the journal has each alarm change once, the standby leads at once, and the two never poll at the same time. The
+// readings of the new leader become stale if the device stops.
 import assert from 'node:assert/strict';
 import { copyFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -89,6 +90,10 @@ test('with changing leaders each change of an alarm is written once, and the sta
     await until('the same changes at the standby', async () => (await changes(two.other(core))).length >= rows.length);
     assert.deepEqual(await changes(two.other(core)), rows);
     assert.deepEqual(await two.network.overlaps(), []);
+    // This leader was a standby, whose readings do not become stale by themselves. Now they must, as on any leader.
+    await two.plant.tell('pause');
+    await until('a stale reading', async () => (await core.node.tags())['TI-1'].quality_name === 'Bad_CommunicationError');
+    await two.plant.tell('resume');
 });
 
 // Restarts both cores so that each has a token file of its own and a token of its own for the role standby.

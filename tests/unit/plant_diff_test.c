@@ -74,6 +74,20 @@ CASE(another_start_of_an_asset_is_said)
     assert_diff(c, before, after, (const char *const[]){ "asset E-101 changed" }, 1);
 }
 
+/* A key of the source may change what the addresses of its tags mean. A sentinel is part of the scaling. */
+CASE(a_changed_meaning_of_addresses_is_said)
+{
+    static const char tags[] = "Tag Name,Address,Eng Units,Open Circuit\nA,40001,bar,%s\nB,hr:7,bar,\n";
+    char *none = test_printf(tags, ""), *one = test_printf(tags, "32767");
+    struct plant *before = load(c, YAML(TEMP, ""), none), *sentinel = load(c, YAML(TEMP, ""), one);
+    struct plant *base = load(c,
+                              "plant: { name: P }\nassets:\n  - { id: E-101, model: m.glb }\ngroups:\n" TEMP
+                              "sources:\n  - { id: plc, type: modbus, host: h, byte_order: CDAB, address_base: 0 }\ntags: tags.csv\n",
+                              none);
+    assert_diff(c, before, base, (const char *const[]){ "tag A changed: address" }, 1);
+    assert_diff(c, before, sentinel, (const char *const[]){ "tag A changed: scaling" }, 1);
+}
+
 CASE(the_same_files_have_the_same_hash)
 {
     struct plant *one = load(c, YAML(TEMP, ""), TAGS "A,40001,bar,90\n"), *two = load(c, YAML(TEMP, ""), TAGS "A,40001,bar,90\n");

@@ -4,6 +4,7 @@
 #include "tests/support/test.h"
 
 #include "tests/support/plant_by_hand.h"
+#include "tests/support/plant_case.h"
 #include "value/alarm.h"
 #include "value/quality.h"
 #include "value/store.h"
@@ -41,6 +42,16 @@ static const struct reading *look(struct store_setup *s, int tag, int64_t now_ns
 {
     store_snapshot(s->store, now_ns, now_ns + 1000 * S, s->snapshot);
     return &s->snapshot->readings[tag];
+}
+
+static void set_up_again(struct store_setup *s)
+{
+    s->store = test_store(s->plant);
+}
+
+static int64_t take(struct store_setup *s, int64_t now_ns)
+{
+    return store_take(s->store, now_ns, now_ns + 1000 * S, s->snapshot);
 }
 
 #define assert_quality(q, wanted) assert_string_equal(quality_name(q), quality_name(wanted))
@@ -247,6 +258,108 @@ CASE(readings_go_on_in_another_plant)
     assert_true(store_link_is_up(store, 0));
 }
 
+static const struct reading *look_in(struct store_setup *s, struct store *store, int tag, int64_t now_ns)
+{
+    store_snapshot(store, now_ns, now_ns + 1000 * S, s->snapshot);
+    return &s->snapshot->readings[tag];
+}
+
+/* After a reload, a tag's first sample replaces the reading from before, although the sample has an earlier source time. The next
+   samples are compared with it as usual. */
+CASE(the_first_sample_after_a_reload_wins)
+{
+    write_one(s, 0, 42, QUALITY_GOOD, 20 * S);
+    write_one(s, 1, 0, QUALITY_BAD_CONFIGURATION, 20 * S); /* refused, and never had a value */
+    struct store *store = test_store(s->plant);
+    store_adopt(store, s->store);
+    assert_true(look_in(s, store, 0, 21 * S)->value == 42);
+    assert_quality(look_in(s, store, 0, 21 * S)->quality, QUALITY_GOOD);
+    const struct sample first[] = { { 0, 7, QUALITY_GOOD }, { 1, 8, QUALITY_GOOD } }, older = { 0, 6, QUALITY_GOOD };
+    store_write(store, first, 2, 19 * S, 1019 * S);
+    store_write(store, &older, 1, 18 * S, 1018 * S);
+    assert_true(look_in(s, store, 0, 21 * S)->value == 7);
+    assert_true(s->snapshot->readings[0].age_ns == 2 * S);
+    assert_quality(look_in(s, store, 1, 21 * S)->quality, QUALITY_GOOD);
+}
+
+#define ADOPTED_PLANT(source, base)                                                                                                        \
+    "plant: { name: P }\nassets:\n  - { id: A, model: m.glb }\ngroups:\n  - { id: g, unit: bar, min: 0, max: 9 }\n"                        \
+    "sources:\n  - { id: " source ", type: modbus, host: h, address_base: " base " }\ntags: tags.csv\n"
+#define ADOPTED_TAGS(address, scaled_high, sentinel, formula)                                                                              \
+    "Tag Name,Address,Data Type,Eng Units,Scaling,Raw Low,Raw High,Scaled Low,Scaled High,Open Circuit\n"                                  \
+    "T," address ",,bar,Linear,0,100,0," scaled_high "," sentinel "\nSAME,hr:9,,bar,,,,,,\nSUM,= " formula ",,bar,,,,,,\n"
+
+/* A reload that changes how a tag gets its value does not keep the tag's old reading: that is the reading of another node, or has
+   the wrong scaling. Tags computed from this tag do not keep theirs either. */
+TEST_WITH(a_corrected_tag_waits_for_its_first_value, plant_case_set_up, plant_case_tear_down)
+{
+    static const struct {
+        const char *yaml, *tags;
+        bool keeps[3]; /* of T, SAME and SUM */
+    } cases[] = { { ADOPTED_PLANT("a", "1"), ADOPTED_TAGS("40001", "10", "", "[T] + [T]"), { true, true, true } },
+                  { ADOPTED_PLANT("a", "1"), ADOPTED_TAGS("40002", "10", "", "[T] + [T]"), { false, true, false } },
+                  { ADOPTED_PLANT("a", "1"), ADOPTED_TAGS("40001", "20", "", "[T] + [T]"), { false, true, false } },
+                  { ADOPTED_PLANT("a", "1"), ADOPTED_TAGS("40001", "10", "32767", "[T] + [T]"), { false, true, false } },
+                  { ADOPTED_PLANT("a", "0"), ADOPTED_TAGS("40001", "10", "", "[T] + [T]"), { false, true, false } },
+                  { ADOPTED_PLANT("b", "1"), ADOPTED_TAGS("40001", "10", "", "[T] + [T]"), { false, false, false } },
+                  { ADOPTED_PLANT("a", "1"), ADOPTED_TAGS("40001", "10", "", "[T] + [SAME]"), { true, true, false } } };
+    const struct sample samples[] = { { 0, 42, QUALITY_GOOD }, { 1, 43, QUALITY_GOOD }, { 2, 44, QUALITY_GOOD } };
+    struct plant_case *c = *state;
+    plant_case_load(c, cases[0].yaml, cases[0].tags);
+    plant_case_assert_loaded(c, 0);
+    struct store *before = test_store(c->plant);
+    store_write(before, samples, 3, 10 * S, 1010 * S);
+    for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
+        struct plant_case other = { .folder = c->folder, .path = c->path };
+        plant_case_load(&other, cases[i].yaml, cases[i].tags);
+        plant_case_assert_loaded(&other, 0);
+        struct store *after = test_store(other.plant);
+        struct snapshot *snapshot = test_snapshot(3);
+        store_adopt(after, before);
+        store_snapshot(after, 11 * S, 1011 * S, snapshot);
+        for (int tag = 0; tag < 3; tag++) {
+            assert_quality(snapshot->readings[tag].quality, cases[i].keeps[tag] ? QUALITY_GOOD : QUALITY_BAD_WAITING);
+            assert_true(snapshot->readings[tag].age_ns == (cases[i].keeps[tag] ? S : INT64_MAX));
+        }
+        plant_case_forget(&other);
+    }
+}
+
+static void mirror_one(struct store_setup *s, int tag, double value, uint32_t quality, int64_t now_ns)
+{
+    const struct mirrored reading = {
+        .tag = tag, .quality = quality, .value = value, .has_value = true, .received_mono_ns = now_ns, .received_utc_ns = now_ns + 1000 * S
+    };
+    store_mirror(s->store, &reading, 1, now_ns);
+}
+
+/* A standby takes over: its store then has its core's readings, and gets samples from its own sources. These must become stale,
+   lost and flat as on a daemon that never was a standby, and the first one must count even if it is older. */
+CASE(readings_become_stale_again_after_a_take_over)
+{
+    s->plant->tags[1].validity.flatline_s = 3;
+    set_up_again(s);
+    for (int tag = 0; tag < 3; tag++)
+        mirror_one(s, tag, 42, tag == 2 ? QUALITY_BAD_CONFIGURATION : QUALITY_GOOD, 10 * S);
+    assert_quality(look(s, 0, 1000 * S)->quality, QUALITY_GOOD); /* the core decides */
+    store_tags_dead(s->store, (int[]){ 0, 1 }, 2, 11 * S);       /* the link to the core ends */
+    write_one(s, 0, 42, QUALITY_GOOD, 12 * S);
+    assert_quality(look(s, 0, 17 * S - 1)->quality, QUALITY_GOOD);
+    assert_true(take(s, 12 * S) == 17 * S);
+    assert_quality(look(s, 0, 17 * S)->quality, QUALITY_BAD_COMMUNICATION_ERROR);
+    write_one(s, 0, 42, QUALITY_GOOD, 18 * S);
+    store_tags_lost(s->store, (int[]){ 0 }, 1, 19 * S);
+    assert_quality(look(s, 0, 23 * S - 1)->quality, QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE);
+    assert_quality(look(s, 0, 23 * S)->quality, QUALITY_BAD_COMMUNICATION_ERROR);
+    assert_quality(look(s, 1, 1000 * S)->quality, QUALITY_BAD_COMMUNICATION_ERROR); /* no own sample arrives */
+    for (int t = 12; t <= 16; t++)
+        write_one(s, 1, 42, QUALITY_GOOD, t * S);
+    assert_quality(look(s, 1, 16 * S)->quality, QUALITY_UNCERTAIN_SENSOR_NOT_ACCURATE);
+    /* the core could not read tag 2, but this daemon can; the value has not changed since before */
+    write_one(s, 2, 7, QUALITY_GOOD, 9 * S);
+    assert_quality(look(s, 2, 10 * S)->quality, QUALITY_GOOD);
+}
+
 /* A tag whose source was lost gets samples from another source. It sends the last value again with the original timestamp,
    which the daemon's clock shifts slightly. The reading must become usable again. */
 CASE(a_value_told_again_is_good_again)
@@ -262,6 +375,11 @@ CASE(a_value_told_again_is_good_again)
     store_write(s->store, &(struct sample){ .tag = 0, .value = 42, .quality = QUALITY_GOOD }, 1, 10 * S - 1, 1010 * S);
     assert_true(look(s, 0, 21 * S)->value == 42);
     assert_false(quality_is_bad(look(s, 0, 11 * S)->quality));
+    /* a tag that was refused, and never had a value */
+    write_one(s, 1, 0, QUALITY_BAD_CONFIGURATION, 10 * S);
+    store_tags_dead(s->store, &(int){ 1 }, 1, 20 * S);
+    write_one(s, 1, 8, QUALITY_GOOD, 9 * S);
+    assert_quality(look(s, 1, 10 * S)->quality, QUALITY_GOOD);
 }
 
 CASE(all_who_listen_hear_until_they_leave)
@@ -300,11 +418,6 @@ TEST(qualities_have_names_and_classes)
     assert_string_equal(quality_class(QUALITY_UNCERTAIN_UNITS_EXCEEDED), "uncertain");
     assert_string_equal(quality_class(QUALITY_BAD_WAITING), "bad");
     assert_string_equal(quality_class(0xC0000000u), "bad");
-}
-
-static void set_up_again(struct store_setup *s)
-{
-    s->store = test_store(s->plant);
 }
 
 CASE(a_value_that_never_moves_is_doubted)
@@ -440,11 +553,6 @@ CASE(a_step_of_the_wall_clock_makes_nothing_fresh_or_stale)
 static void count_call(void *arg)
 {
     ++*(int *)arg;
-}
-
-static int64_t take(struct store_setup *s, int64_t now_ns)
-{
-    return store_take(s->store, now_ns, now_ns + 1000 * S, s->snapshot);
 }
 
 CASE(whoever_watches_is_told_once_until_the_next_look)
