@@ -428,6 +428,15 @@ void store_tags_dead(struct store *store, const int *tags, size_t count, int64_t
     pthread_mutex_unlock(&store->lock);
 }
 
+void store_values_missed(struct store *store, const int *tags, size_t count, bool dead, int64_t now_mono_ns)
+{
+    pthread_mutex_lock(&store->lock);
+    for (size_t i = 0; i < count; i++)
+        if (store->tags[tags[i]].has_value)
+            lose(store, (size_t)tags[i], dead, now_mono_ns);
+    pthread_mutex_unlock(&store->lock);
+}
+
 static void set_link(struct store *store, int source, bool up, int64_t now_mono_ns)
 {
     struct source_link *link = &store->links[source];

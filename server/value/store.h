@@ -78,6 +78,9 @@ void store_link_lost(struct store *store, int source, int64_t now_mono_ns);
 void store_tags_lost(struct store *store, const int *tags, size_t count, int64_t now_mono_ns);
 /* Makes some tags Bad_CommunicationError immediately, even if their last values are recent, because these values must no longer be used. */
 void store_tags_dead(struct store *store, const int *tags, size_t count, int64_t now_mono_ns);
+/* Records that newer values of some tags may have been missed. Their last values become Bad as after store_tags_dead() if `dead` is
+   set, otherwise Uncertain as after store_tags_lost(). Tags without a value do not change. */
+void store_values_missed(struct store *store, const int *tags, size_t count, bool dead, int64_t now_mono_ns);
 /* Records that a source can be read again. Each of its tags is usable again from its next sample on. */
 void store_link_up(struct store *store, int source, int64_t now_mono_ns);
 /* Records that a source is not connected, without changing its tags. For renderers (daemons that draw pictures), which receive each

@@ -120,6 +120,23 @@ test('the death of a device or a node makes all its tags Bad at once', options, 
     await until('TI-1', { ...good, value: 20.5 });
 });
 
+// The connection of a reloaded daemon is a new one, which may have missed messages.
+test('after a reload, tags are Bad until the next birth certificate', options, async () => {
+    await plant.run('payload: sparkplug', ROWS);
+    const node = await startNode();
+    await until('XS-1', { ...good, value: 1 });
+    await plant.reload();
+    node.publishDeviceData('skid', { timestamp: Date.now(), metrics: [{ alias: 4, type: 'Boolean', value: false }] });
+    await plant.daemon.line(/node U100\/edge: values ignored, because the node has not sent a Sparkplug birth certificate yet/);
+    await allDead('TI-1', 'TI-2', 'PI-1', 'XS-1');
+    node.bear();
+    await until('TI-1', { ...good, value: 20.5 });
+    await until('XS-1', { ...good, value: 1 });
+    await plant.reload();
+    kill(node);
+    await allDead('TI-1', 'TI-2', 'PI-1', 'XS-1');
+});
+
 test('an old death certificate is ignored', options, async () => {
     await plant.run('payload: sparkplug', ROWS);
     const node = await startNode();

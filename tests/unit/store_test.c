@@ -360,6 +360,22 @@ CASE(readings_become_stale_again_after_a_take_over)
     assert_quality(look(s, 2, 10 * S)->quality, QUALITY_GOOD);
 }
 
+/* A source that knows that it has missed messages marks its last values, but not the tags that never had one. */
+CASE(missed_values_make_the_last_ones_unusable)
+{
+    for (int dead = 0; dead < 2; dead++) {
+        set_up_again(s);
+        write_one(s, 0, 7, QUALITY_GOOD, 10 * S);
+        store_values_missed(s->store, (int[]){ 0, 1 }, 2, dead, 11 * S);
+        assert_quality(look(s, 0, 11 * S)->quality,
+                       dead ? QUALITY_BAD_COMMUNICATION_ERROR : QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE);
+        assert_quality(look(s, 0, 15 * S)->quality, QUALITY_BAD_COMMUNICATION_ERROR);
+        assert_quality(look(s, 1, 11 * S)->quality, QUALITY_BAD_WAITING);
+        write_one(s, 0, 8, QUALITY_GOOD, 12 * S);
+        assert_quality(look(s, 0, 12 * S)->quality, QUALITY_GOOD);
+    }
+}
+
 /* A tag whose source was lost gets samples from another source. It sends the last value again with the original timestamp,
    which the daemon's clock shifts slightly. The reading must become usable again. */
 CASE(a_value_told_again_is_good_again)

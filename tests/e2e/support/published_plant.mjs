@@ -5,6 +5,7 @@ import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { setTimeout as sleep } from 'node:timers/promises';
 import { TinyPlant } from './tiny_plant.mjs';
+import { until } from './until.mjs';
 
 const HEAD = 'Tag Name,Address,Data Type,Eng Units,Group,Asset,X,Y,Z,Stale s,Scaling,Raw Low,Raw High,Scaled Low,Scaled High';
 
@@ -56,6 +57,14 @@ tags: tags.csv
         assert.equal(prepared.code, 0, prepared.err);
         await this.plant.startDaemon();
         await this.daemon.line(/source (broker|plc): .*: reading/);
+    }
+
+    // Reloads the plant, and waits until the daemon has subscribed to its values again.
+    async reload() {
+        const from = this.daemon.said.length;
+        const answer = await fetch(`http://127.0.0.1:${this.plant.port}/api/v1/reload`, { method: 'POST' });
+        assert.equal(answer.status, 200, await answer.text());
+        await until('the source reading again', () => /source (broker|plc): .*: reading/.test(this.daemon.said.slice(from)));
     }
 
     async get(path) {
