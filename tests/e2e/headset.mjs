@@ -7,7 +7,7 @@ import { DESKTOP, openPage, readPng, SCREENSHOTS, SHOOTS, waitForHealth, waitFor
 import { aimAt, enterVr, EYE, eyesPng, headsetScript, IPD_M, lookFrom, pull, SCREEN, seen, SMALL } from './support/headset.mjs';
 import { setUp } from './support/set_up.mjs';
 import { notBuilt, TinyPlant } from './support/tiny_plant.mjs';
-import { until } from './support/until.mjs';
+import { becomes, until } from './support/until.mjs';
 
 const options = { skip: notBuilt(), timeout: 200000 };
 const PX_PER_TAN = EYE.height / 2; // focal length of one eye in pixels: its field of view is 90 degrees
@@ -111,6 +111,43 @@ test('each eye sees the plant from its own position; a turned head shows the cha
     assert.equal(await page.locator('#enter-vr').isEnabled(), true);
 }, { screen: SCREEN }));
 
+// Aims at a button of the panel at the wrist and pulls the trigger. from: start of the button's text.
+async function pressWrist(page, from) {
+    const button = await page.evaluate(async (start) => {
+        const { session, modules } = globalThis.plantcast, { hands } = modules.there('enterVr').headset;
+        const { showWrist } = await import('/app/xr/boards.js');
+        const { buttons } = showWrist({ canvas: hands.wrist.canvas, show() {} }, session, null, () => {});
+        const { x, y, width, height } = buttons.find(({ text }) => text.startsWith(start)), panel = hands.panel();
+        return hands.onPanel(panel, [x + width / 2, y + height / 2]);
+    }, from);
+    await aimAt(page, button);
+    await pull(page);
+}
+
+// Goes a minute back and to the present with the panel at the wrist. Meanwhile, the user stays where they are, and the legend with
+// the age of the data is in the view.
+async function backAndLive(page) {
+    const look = () => page.evaluate(() => {
+        const { headset } = globalThis.plantcast.modules.there('enterVr'), { rig, legend, state } = headset;
+        const boards = headset.boards(performance.now());
+        return { at: rig.at, axes: rig.axes, kind: state.kind, hasLegend: boards.some(({ texture }) => texture === legend.texture),
+            says: legend.key };
+    });
+    await page.waitForFunction(() => globalThis.plantcast.session.recorded);
+    const before = await look();
+    assert.match(before.says, /Oldest/);
+    await pressWrist(page, '−1 ');
+    await page.waitForFunction(() => globalThis.plantcast.session.time.atUs !== null);
+    await becomes(async () => (await look()).kind, 'past');
+    const past = await look();
+    assert.notEqual(past.says, before.says, 'the legend states the instant');
+    await pressWrist(page, 'Now');
+    await page.waitForFunction(() => globalThis.plantcast.session.time.atUs === null);
+    await becomes(async () => (await look()).kind, 'live');
+    for (const { at, axes, hasLegend } of [before, past, await look()])
+        assert.deepEqual({ at, axes, hasLegend }, { at: before.at, axes: before.axes, hasLegend: true });
+}
+
 test('hands can teleport on the floor, select equipment, read a sensor, use the wrist panel and grip',
     options, () => withHeadset(async (page) => {
     await enterVr(page);
@@ -144,6 +181,7 @@ test('hands can teleport on the floor, select equipment, read a sensor, use the 
     await keep(page, 'headset-wrist');
     await pull(page);
     await page.waitForFunction(() => globalThis.plantcast.session.params.group === 'pressure');
+    await backAndLive(page);
     const before = (await state(page, 'rig')).at;
     await page.evaluate(async () => {
         const { device } = globalThis, { headset } = globalThis.plantcast.modules.there('enterVr');

@@ -177,7 +177,8 @@ function wristRows(session, leave) {
         [{ text: say('xr.leave'), act: leave }]];
 }
 
-// Draws the panel at the wrist with the user's controls. Returns its buttons with their rectangles as fractions of the panel's size.
+// Draws the panel at the wrist with the user's controls. Returns { buttons (with their rectangles as fractions of the panel's size), over
+// (the button that the user points at, or null) }.
 export function showWrist(board, session, pointed, leave) {
     const rows = wristRows(session, leave), { width, height } = board.canvas, tall = height / rows.length;
     const buttons = rows.flatMap((row, j) => row.map((button, i) => ({ ...button, x: i / row.length, y: j / rows.length,
@@ -195,7 +196,7 @@ export function showWrist(board, session, pointed, leave) {
             write(c, text, (x + w / 2) * width, y * height + tall / 2, w * width - 32, { size: Math.min(44, tall / 2), align: 'center' });
         });
     });
-    return { over: buttons[over] ?? null };
+    return { buttons, over: buttons[over] ?? null };
 }
 
 // Returns the lines [[text, size, weight], ...] of a card about the sensor or point that the user picked.
