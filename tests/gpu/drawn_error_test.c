@@ -67,8 +67,10 @@ static double between(double low, double high)
 
 static double weight_of(const struct view *view, double distance_m, double radius_m, double *term)
 {
-    if (view->field.interpolation == INTERPOLATION_SHEPARD)
-        return *term = pow(fmax(distance_m, 1e-12), -view->field.power);
+    if (view->field.interpolation == INTERPOLATION_SHEPARD) {
+        const double reach_m = view->field.reach_m, left = reach_m < INFINITY ? fmax(1 - distance_m / reach_m, 0) : 1;
+        return *term = pow(fmax(distance_m, 1e-12), -view->field.power) * left * left;
+    }
     double near = fmax(0, 1 - distance_m / radius_m), weight = exp(near);
     *term = weight * near;
     return weight;
@@ -391,6 +393,42 @@ TEST(test_triangles_without_samples_are_marked)
     struct drawn_error_tally tally;
     tally_plates(SIDE_M / 2, CROWD, DISTANCE_GEODESIC, &tally);
     expect_truth("half of needles, 200 sensors", &tally);
+}
+
+/* Near the middle of a plate of small triangles, one sensor is near, and the others are at the ends of their reach. */
+TEST(test_ends_of_reaches_are_marked)
+{
+    static const double powers[] = { 0.5, 1, 2 };
+    enum { RING = 40 };
+    const double reach_m = 1.5;
+    random_state = sweep_seed();
+    for (size_t i = 0; i < sizeof(powers) / sizeof(*powers); i++) {
+        struct drawn_error_tally tally = { .worst_beyond = -1 };
+        struct toy *toy = toy_create();
+        struct test_shape shape = { 0 };
+        struct stand stand;
+        struct view view;
+        double places[RING][3] = { { SIDE_M / 2 + reach_m / 2, SIDE_M / 2, 0 } };
+        for (int s = 1; s < RING; s++) {
+            const double angle = between(-M_PI, M_PI), away_m = reach_m * between(0.95, 1.05);
+            memcpy(places[s], (double[3]){ SIDE_M / 2 + away_m * cos(angle), SIDE_M / 2 + away_m * sin(angle), 0 }, sizeof(places[s]));
+        }
+        shape_plate(&shape, TOY_STEEL, (double[3]){ 0 }, (double[3]){ SIDE_M, 0, 0 }, (double[3]){ 0, SIDE_M, 0 }, CELLS);
+        toy_add(toy, "PLATE", &shape, (double[3]){ 0, 0, 0 }, (const double(*)[3])places, RING);
+        toy->scene.assets[0].file->resolved_levels = 0;
+        stand_init(&stand, &rig, toy);
+        for (int s = 0; s < RING; s++)
+            toy_set(stand.snapshot, s, s ? 100 : 0, QUALITY_GOOD);
+        view_default(&toy->scene, WIDTH_PX, HEIGHT_PX, &view);
+        view.tier = TIER_PREVIEW;
+        view.field.distance = DISTANCE_GEODESIC;
+        view.field.power = powers[i];
+        view.field.reach_m = reach_m;
+        look(&toy->scene, &view);
+        compare_view(&(struct drawn_error_case){ &toy->scene, stand.field, stand.renderer, stand.snapshot }, &view, &tally);
+        stand_finish(&stand);
+        expect_truth(test_printf("ends of reaches, power %g", powers[i]), &tally);
+    }
 }
 
 /* Sets up a plant with one plate of needles and MANY sensors. resolved_levels: bit i tells the renderer that preparation has
