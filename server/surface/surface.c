@@ -12,6 +12,7 @@
 #include "base/math/vec.h"
 #include "base/mem.h"
 #include "surface/repair/interior.h"
+#include "surface/mesh/short_sides.h"
 #include "surface/mesh/spatial_order.h"
 #include "surface/repair/parts.h"
 #include "surface/repair/repair.h"
@@ -176,7 +177,6 @@ static void decimate(struct surface *surface, const uint32_t *part, size_t added
         keep[p] = 1;
     for (size_t v = 0; v < surface->vertex_count; v++)
         keep[surface->vertex_point[v]] = 1;
-    surface->plane = mem_array(surface->report.triangles, sizeof(*surface->plane));
     decimate_mesh(mesh, hidden,
                   &(struct decimate_params){ .part = part,
                                              .keep = keep,
@@ -248,6 +248,15 @@ static size_t set_aside_needles(struct surface *surface)
     return count;
 }
 
+/* Merges model vertices at short sides of needle-shaped triangles. They become strays. */
+static void merge_short_sides(struct surface *surface)
+{
+    surface->plane = mem_array(surface->report.triangles, sizeof(*surface->plane));
+    for (uint32_t source = 0; source < surface->report.triangles; source++)
+        surface->plane[source] = source;
+    short_sides_merge(&surface->mesh, surface->report.size_m, surface->plane);
+}
+
 /* Samples the surface evenly: adds points until edges are no longer than the spacing. Rods and narrow strips take more points
  * than their area suggests. If there are too many points, the spacing grows for all parts. A single unsampled part would keep
  * edges as long as the asset, and have poor distances. Triangles that reach from the main part to a stray vertex are not
@@ -291,8 +300,8 @@ static void find_strays(struct surface *surface)
         mem_grow(&surface->strays, &capacity, surface->stray_count + 1, sizeof(*surface->strays));
         struct stray *stray = &surface->strays[surface->stray_count++];
         stray->vertex = v;
-        memcpy(stray->points, surface->visible.tris[place.tri], sizeof(stray->points));
-        memcpy(stray->weights, place.weights, sizeof(stray->weights));
+        stray->tri = place.tri;
+        memcpy(stray->point_m, place.point, sizeof(stray->point_m));
     }
     mem_free(used);
 }
@@ -361,6 +370,7 @@ struct surface *surface_create(struct log *log, struct workers *workers, const f
     if (!weld(surface, positions_m, triangles, triangle_count, size_m, params->why))
         goto error;
     report->weld_s = seconds_since(&since_ns);
+    merge_short_sides(surface);
     if (!close_seams(surface, params->why))
         goto error;
     parts_init(&parts, &surface->mesh, triangle_count, report->tolerance_m, params->tolerance_m <= 0);

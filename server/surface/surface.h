@@ -3,7 +3,8 @@
    sensor moves. The paper (Kim & Suh 2025, section 3.3) discards the mesh: samples and vertices become a point cloud, kNN connects them,
    and the heat method runs on that graph. On clean CAD this loses the mesh's connectivity (neighbours reach through thin walls and across
    narrow slots); on broken CAD it still works. This folder does the following instead:
-   1. The mesh's connectivity is kept: vertices at one position are welded, repeated faces dropped (trimesh.h).
+   1. The mesh's connectivity is kept: vertices at one position are welded, repeated faces dropped (trimesh.h). Points at short sides of
+   needle-shaped triangles are merged (short_sides.h).
    2. Defects are bridged: borders are joined within one tolerance, and so are parts that touch or cross each other or themselves. Pairs of
    border points to join come from a kNN search in the point cloud (point_cloud.h, repair.h). Triangles inside another closed part, or
    between two parts that touch face to face, are hidden (parts.h, interior.h).

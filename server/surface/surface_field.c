@@ -30,22 +30,22 @@ static const struct stray *stray_of(const struct surface *surface, uint32_t vert
     return at < surface->stray_count && surface->strays[at].vertex == vertex ? &surface->strays[at] : NULL;
 }
 
-/* Returns the distance from a source to a stray vertex (its triangles have no area), interpolated between the corners of the nearest
- * surface triangle. distances_m: distances from the source to all points, `apart` elements from one point to the next. */
-static float at_stray(const struct stray *stray, const float *distances_m, size_t apart)
+/* Writes the distances of a stray vertex, one per source of the field: those of the nearest surface point. */
+static void at_stray(const struct surface *surface, const struct surface_field *field, const struct stray *stray, float *out)
 {
-    double sum = 0;
-    for (int c = 0; c < 3; c++)
-        sum += stray->weights[c] > 0 ? stray->weights[c] * (double)distances_m[stray->points[c] * apart] : 0;
-    return (float)sum;
+    struct surface_point hit = { .tri = stray->tri };
+    memcpy(hit.point_m, stray->point_m, sizeof(hit.point_m));
+    surface_field_at_point(field, surface, &hit, out);
 }
 
-static void take_vertices(const struct surface *surface, const float *distances_m, float *out)
+/* Writes the distances of all model vertices from one source. distances_m: those of the surface's points. */
+static void take_vertices(const struct surface *surface, const struct surface_point *source, float *distances_m, float *out)
 {
+    struct surface_field field = { 1, (struct surface_point *)source, (uint32_t *)&source->tri, distances_m };
     for (size_t v = 0; v < surface->vertex_count; v++)
         out[v] = distances_m[surface->vertex_point[v]];
     for (size_t i = 0; i < surface->stray_count; i++)
-        out[surface->strays[i].vertex] = at_stray(&surface->strays[i], distances_m, 1);
+        at_stray(surface, &field, &surface->strays[i], &out[surface->strays[i].vertex]);
 }
 
 /* Copies a block of distances into the field, one cache line at a time. The block has a column per source, sorted by point; the field has a
@@ -73,12 +73,12 @@ static bool propagate(const struct solve *solve, struct abreast *abreast, float 
     if (!propagation_run(&surface->propagation, abreast->fronts, abreast->from, abreast->count))
         return false;
     for (size_t i = 0; i < abreast->count; i++) {
-        const float *distance_m = abreast->fronts[i].distance_m;
+        float *distance_m = abreast->fronts[i].distance_m;
         size_t s = abreast->source[i];
         if (block)
             memcpy(block + (s - first) * points, distance_m, points * sizeof(*block));
         else
-            take_vertices(surface, distance_m, solve->out + s * surface->vertex_count);
+            take_vertices(surface, &solve->hits[s], distance_m, solve->out + s * surface->vertex_count);
         if (block && solve->columns)
             solve->columns->keep(solve->columns->arg, s, block + (s - first) * points);
     }
@@ -176,10 +176,10 @@ void surface_field_finish(struct surface_field *field)
 void surface_field_at_vertex(const struct surface_field *field, const struct surface *surface, uint32_t vertex, float *out)
 {
     const struct stray *stray = surface->stray_count ? stray_of(surface, vertex) : NULL;
-    if (!stray)
+    if (stray)
+        at_stray(surface, field, stray, out);
+    else
         memcpy(out, field->distances_m + surface->vertex_point[vertex] * field->source_count, field->source_count * sizeof(*out));
-    for (size_t s = 0; s < field->source_count && stray; s++)
-        out[s] = at_stray(stray, field->distances_m + s, field->source_count);
 }
 
 /* An edge a-b of the triangle that contains a surface point. side: length of the edge. x, y: position of the point in the

@@ -7,11 +7,11 @@
 #include "surface/surface.h"
 #include "surface/geodesic/propagation.h"
 
-/* stray vertex: a model vertex that only belongs to triangles without an area. The surface has no point for it, so it gets the
-   distances of the nearest surface point */
+/* Stray vertex: a model vertex without a point of the surface, because all its triangles have no area, or it was merged with another
+   (short_sides.h). Its distances are those of the nearest surface point. */
 struct stray {
-    uint32_t vertex, points[3];
-    double weights[3];
+    uint32_t vertex, tri; /* tri: visible triangle of the nearest surface point */
+    double point_m[3];
 };
 
 struct surface {

@@ -13,6 +13,6 @@ struct surface *surface_unpack(struct unpack *from, struct log *log, struct work
 
 /* first bytes of the file in which plantcast-prep stores a surface; the file contains nothing else, and is compressed
    (base/files/cache_file.h) */
-#define SURFACE_MAGIC "PLCSURF4"
+#define SURFACE_MAGIC "PLCSURF5"
 
 #endif

@@ -97,6 +97,7 @@ static void cut_up(struct flat_plate *plate)
 
 static void thin(struct flat_plate *plate)
 {
+    plate->plane[1] = 1;
     decimate_mesh(&plate->mesh, plate->hidden,
                   &(struct decimate_params){ .part = plate->part, .keep = plate->keep, .within_m = WITHIN_M, .longest_m = 10 },
                   plate->plane, 2, plate->target);

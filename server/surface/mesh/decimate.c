@@ -238,8 +238,6 @@ void decimate_mesh(struct trimesh *mesh, char *hidden, const struct decimate_par
     thin.heads = mem_array(mesh->point_count, sizeof(*thin.heads));
     thin.tails = mem_array(mesh->point_count, sizeof(*thin.tails));
     thin.next = mem_array(3 * mesh->tri_count, sizeof(*thin.next));
-    for (uint32_t source = 0; source < source_count; source++)
-        plane[source] = source;
     list_corners(&thin);
     for (uint32_t p = 0; p < mesh->point_count; p++) {
         uint32_t to = !params->keep[p] && collect_star(&thin, p, &star) ? find_collapse_target(&thin, &star) : TRIMESH_NONE;

@@ -14,7 +14,8 @@ struct decimate_params {
 /* Removes points by merging each with a neighbour (edge collapse). This is done only if all triangles at the point stay in
    their planes (within params->within_m), and the visible and the hidden area of each part stay the same, so that borders and
    lines between parts stay in place. hidden[] is rearranged with the triangles. Pieces of coplanar model triangles may be
-   merged: plane[source] receives the lowest index of the model triangles merged with triangle `source`. target[point]: receives
+   merged. plane: by model triangle, a union-find structure of model triangles that share pieces already (trimesh_root());
+   plane[source] receives the lowest index of the model triangles that share pieces with triangle `source`. target[point]: receives
    the point's new index, or TRIMESH_NONE if the point is removed. */
 void decimate_mesh(struct trimesh *mesh, char *hidden, const struct decimate_params *params, uint32_t *plane, size_t source_count,
                    uint32_t *target);
