@@ -344,14 +344,14 @@ static void make_plate(struct test_shape *shape, double end_m, int sensors, doub
 static void fill(struct snapshot *snapshot, int sensors, int round)
 {
     for (int i = 0; i < sensors; i++)
-        toy_set(snapshot, i, between(0, 100), round % 3 == 2 && i == 1 ? QUALITY_BAD_COMMUNICATION_ERROR : QUALITY_GOOD);
+        toy_set(snapshot, i, between(0, 100), round % 2 == 1 && i == 1 ? QUALITY_BAD_COMMUNICATION_ERROR : QUALITY_GOOD);
 }
 
 static void tally_plates(double end_m, int sensors, enum distance_mode distance, struct drawn_error_tally *tally)
 {
     *tally = (struct drawn_error_tally){ .worst_beyond = -1 };
     random_state = sweep_seed();
-    for (int round = 0; round < sweep(12, sensors > MANY ? 1 : 3); round++) {
+    for (int round = 0; round < sweep(12, sensors > MANY ? 1 : 2); round++) {
         struct toy *toy = toy_create();
         struct test_shape shape = { 0 };
         struct stand stand;
@@ -494,7 +494,7 @@ static void expect_odd_shapes(int sensors)
 {
     struct drawn_error_tally tally = { .worst_beyond = -1 };
     random_state = sweep_seed();
-    for (int round = 0; round < sweep(8, sensors > MANY ? 1 : 2); round++) {
+    for (int round = 0; round < sweep(8, 1); round++) {
         struct toy *toy = toy_create();
         struct test_shape shape = { 0 };
         struct stand stand;
