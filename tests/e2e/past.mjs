@@ -81,6 +81,9 @@ test('pictures, tags, markers and picks show the chosen instant, with the qualit
     await travel(client, at(900));
     await client.until('TI-2 lost', () => reading(client, 1)[2] === 'bad');
     assert.equal(reading(client, 1)[3], 'Bad_CommunicationError');
+    assert.equal(reading(client, 1)[4], 300e3, 'the age of a reading lost at minute 10, at minute 15');
+    await travel(client, at(1140));
+    await client.until('the age at minute 19', () => reading(client, 1)[4] === 540e3);
     await travel(client, at(2400));
     const empty = await client.frameWhere('of the time when nothing ran', (p) => p.data_time_us === at(2400));
     assert.ok(empty.flags & FLAG.noLiveData && empty.oldest_age_ms === 0xffffffff);
