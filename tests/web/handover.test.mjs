@@ -47,3 +47,11 @@ test('the journal is read page by page, up to a limit', async () => {
     const part = await readJournal(get, '-8h', 'now', 2);
     assert.deepEqual([part.rows.length, part.cut], [2, true]);
 });
+
+test('a journal whose later page cannot be read is incomplete; without its first page there is none', async () => {
+    const broken = async () => { throw new Error('disk full'); };
+    const get = (query) => (query.before ? broken() : Promise.resolve({ rows: [row(1, 'raise')], next_before: 7 }));
+    const { rows, cut, failed } = await readJournal(get, '-8h', 'now');
+    assert.deepEqual([rows.length, cut, failed], [1, true, 'disk full']);
+    await assert.rejects(readJournal(broken, '-8h', 'now'), /disk full/);
+});

@@ -3,10 +3,12 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { limitText } from '../../clients/web/app/alarms/alarm_bar.js';
+import { TrendTable } from '../../clients/web/app/trends/trend_table.js';
 import { readAddress, writeAddress } from '../../clients/web/core/address.js';
 import {
     ageText, changeText, decimalsFor, decimalsOf, numberText, shortNumberText, timeOrDay, unitText, zoneClock,
 } from '../../clients/web/core/format.js';
+import { Compare } from '../../clients/web/app/views/compare.js';
 import { Legend } from '../../clients/web/app/viewport/legend.js';
 import { behindText } from '../../clients/web/core/health.js';
 import { halfAt, nearestMarker } from '../../clients/web/core/nearest.js';
@@ -84,6 +86,50 @@ test('after a reload of the plant, the legend has the new limits and colours', (
     } finally {
         delete globalThis.ResizeObserver;
         delete globalThis.window;
+    }
+});
+
+test('a comparison no longer says "1 day earlier" after its left half has moved', () => {
+    globalThis.document = {};
+    try {
+        const dayUs = 86400e6, nowUs = Date.UTC(2026, 5, 7) * 1000, ago = { value: '86400' };
+        const session = { time: { atUs: null }, clockUs: () => nowUs };
+        const show = () => Compare.prototype.show.call({ session, ago, atUs: nowUs - dayUs, date: {}, said: {}, zone: 'UTC' });
+        show();
+        assert.equal(ago.value, '86400');
+        session.time.atUs = nowUs - 10e6;
+        show();
+        assert.equal(ago.value, '86400');
+        session.time.atUs = nowUs - 3600e6;
+        show();
+        assert.equal(ago.value, '');
+    } finally {
+        delete globalThis.document;
+    }
+});
+
+test('a trend\'s table shows no present value while no messages arrive from the server', () => {
+    const cells = Object.fromEntries(['at', 'now', 'min', 'mean', 'max', 'known'].map((name) => [name, {}])), tag = { index: 0 };
+    const node = { querySelector: () => ({}), classList: { toggle() {} } }, overlay = { fresh: true };
+    const session = { time: { atUs: null }, model: { readings: [{ value: 9, quality: 'good' }] } };
+    const view = { session, isLive: true, page: { overlay }, numberText: (_, value) => String(value ?? '–') };
+    globalThis.document = { getElementById: () => node };
+    try {
+        const table = new TrendTable(view), stats = { min: 1, mean: 2, max: 3, known: 1 };
+        table.heads = Object.fromEntries(Object.keys(cells).map((name) => [name, {}]));
+        table.rows.set(tag, cells);
+        table.stats.set(tag, stats);
+        table.fill();
+        assert.deepEqual([cells.now.textContent, cells.max.textContent], ['9', '9']);
+        overlay.fresh = false;
+        table.stats.set(tag, stats);
+        table.fill();
+        assert.deepEqual([cells.now.textContent, cells.max.textContent], ['–', '3']);
+        session.time.atUs = 1e15;
+        table.fill();
+        assert.equal(cells.now.textContent, '9', 'the value of a past instant stays valid');
+    } finally {
+        delete globalThis.document;
     }
 });
 

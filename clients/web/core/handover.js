@@ -63,15 +63,21 @@ export function journalSpan(name, nowUs, timeZone) {
     return name === 'today' ? [today, null] : [midnight(today - 12 * 3600e6), today];
 }
 
-// Reads the alarm journal of a time span page by page, up to `most` rows. Returns { rows, cut: true if rows were left out }. get(query)
-// fetches /api/v1/alarms/journal.
+// Reads the alarm journal of a time span page by page, up to `most` rows. Returns { rows, cut (true if rows are missing),
+// failed (why a later page could not be read, or null) }. Throws if the first page cannot be read. get(query) fetches
+// /api/v1/alarms/journal.
 export async function readJournal(get, from, to, most = 20000) {
     const rows = [];
     for (let before = null; ;) {
-        const page = await get({ from, to, limit: 2000, ...(before ? { before } : {}) });
+        const query = { from, to, limit: 2000, ...(before ? { before } : {}) };
+        const page = await get(query).catch((error) => ({ rows: [], failed: error.message }));
+        if (page.failed && before === null)
+            throw new Error(page.failed);
+        if (page.failed)
+            return { rows, cut: true, failed: page.failed };
         rows.push(...page.rows);
         before = page.next_before ?? null;
         if (before === null || rows.length >= most)
-            return { rows, cut: before !== null };
+            return { rows, cut: before !== null, failed: null };
     }
 }

@@ -50,7 +50,10 @@ function valueOf(model, tag, { value, limit, unit: was }) {
     return value === null ? '' : texts.filter(Boolean).join(' ');
 }
 
-function tableOf(titles, rows) {
+// rows: null if they could not be read, for the reason `why`.
+function tableOf(titles, rows, why) {
+    if (rows === null)
+        return make('p', { class: 'wrong' }, say('handover.unread', { why }));
     if (rows.length === 0)
         return make('p', { class: 'none' }, say('none'));
     const names = titles.map((name) => say(`handover.${name}`));
@@ -62,7 +65,8 @@ function tableOf(titles, rows) {
         { count: rows.length - MOST }))) : table;
 }
 
-const part = (name, titles, rows) => make('section', { 'data-part': name }, make('h2', {}, say(`handover.${name}`)), tableOf(titles, rows));
+const part = (name, titles, rows, why) => make('section', { 'data-part': name }, make('h2', {}, say(`handover.${name}`)),
+    tableOf(titles, rows, why));
 
 function formOf(hours) {
     const select = make('select', { onchange: () => location.assign(`?from=-${select.value}h`) }, ...HOURS.map((n) =>
@@ -71,20 +75,21 @@ function formOf(hours) {
         make('button', { type: 'button', onclick: () => window.print() }, say('handover.print')));
 }
 
-function standingPart(model) {
-    return part('standing', ['priority', 'alarm', 'about', 'state', 'time', 'value', 'who'], model.alarms.list().map((alarm) =>
+function standingPart(model, alarms, why) {
+    return part('standing', ['priority', 'alarm', 'about', 'state', 'time', 'value', 'who'], alarms && alarms.list().map((alarm) =>
         [String(alarm.priority), alarmOf(alarm.tag.name, kindsOf(alarm)), aboutOf(model, alarm.tag), say(`state.${alarm.state}`),
-            dayTimeOf(alarm.raisedUs), valueOf(model, alarm.tag, alarm), [alarm.who, alarm.reason].filter(Boolean).join(': ')]));
+            dayTimeOf(alarm.raisedUs), valueOf(model, alarm.tag, alarm), [alarm.who, alarm.reason].filter(Boolean).join(': ')]), why);
 }
 
-function asidePart(model) {
-    return part('asides', ['alarm', 'about', 'state', 'until', 'who', 'reason'], asideOf(model.alarms).map((alarm) =>
+function asidePart(model, alarms, why) {
+    return part('asides', ['alarm', 'about', 'state', 'until', 'who', 'reason'], alarms && asideOf(alarms).map((alarm) =>
         [alarmOf(alarm.tag.name, [alarm.kind]), aboutOf(model, alarm.tag), say(`state.${alarm.state}`),
-            alarm.untilUs ? dayTimeOf(alarm.untilUs) : '', alarm.who, alarm.reason]));
+            alarm.untilUs ? dayTimeOf(alarm.untilUs) : '', alarm.who, alarm.reason]), why);
 }
 
-function pageOf(model, notes, journal, [fromUs, toUs], missing) {
-    const { raised, acknowledged, shelved, aside } = sortJournal(journal.rows), { active, waiting } = model.alarms.counts();
+// alarms, journal: null if they could not be read; failures: { alarms, journal } has the reasons.
+function pageOf(model, notes, alarms, journal, [fromUs, toUs], failures) {
+    const { raised, acknowledged, shelved, aside } = journal ? sortJournal(journal.rows) : {}, { active, waiting } = alarms?.counts() ?? {};
     const doneBy = ({ time_us: us, who, reason, tag, kinds }) =>
         [dayTimeOf(us), alarmOf(tag, kinds), aboutOf(model, model.tag(tag)), who, reason ?? ''];
     const raisedOf = ({ first, last, count, priority, tag, kinds, ...row }) => [dayTimeOf(first), alarmOf(tag, kinds),
@@ -92,20 +97,23 @@ function pageOf(model, notes, journal, [fromUs, toUs], missing) {
     const endOf = ({ ended_us: us, ended_by: who, until_us: until }) =>
         (us ? say('handover.ended', { who, time: dayTimeOf(us) }) : until ? dayTimeOf(until) : '');
     const noteOf = (note) => [dayTimeOf(note.time_us), whereText(model, note), note.text, note.by, endOf(note)];
-    const counts = [['active', active], ['waiting', waiting], ['raised', raised.reduce((sum, { count }) => sum + count, 0)],
-        ['acknowledged', acknowledged.length]];
+    const counts = [['active', active], ['waiting', waiting], ['raised', raised?.reduce((sum, { count }) => sum + count, 0)],
+        ['acknowledged', acknowledged?.length]];
     const title = say('handover.title', { plant: model.plant.name });
     document.title = `${title} ${timeOf(toUs)}`;
     return [
         make('h1', {}, title), make('p', { class: 'span' }, `${timeOf(fromUs)} – ${timeOf(toUs)} ${clock(toUs / 1000).offset}`),
         formOf(Math.round((toUs - fromUs) / 3600e6)),
         make('p', { class: 'counts' }, ...counts.map(([name, n]) =>
-            make('span', {}, `${say(`handover.${name}`)}: `, make('b', {}, String(n))))),
-        ...[...missing, ...(journal.cut ? [say('handover.cut')] : [])].map((text) => make('p', { class: 'wrong' }, text)),
-        part('notes', ['time', 'where', 'what', 'who', 'until'], notes.map(noteOf)), standingPart(model), asidePart(model),
-        part('raised', ['time', 'alarm', 'about', 'priority', 'count', 'newest', 'value'], raised.map(raisedOf)),
-        part('acknowledged', ['time', 'alarm', 'about', 'who', 'reason'], acknowledged.map(doneBy)),
-        part('shelved', ['time', 'alarm', 'about', 'who', 'reason'], [...shelved, ...aside].map(doneBy)),
+            make('span', {}, `${say(`handover.${name}`)}: `, make('b', {}, String(n ?? '–'))))),
+        ...[journal?.failed, journal?.cut && say('handover.cut')].filter(Boolean)
+            .map((text) => make('p', { class: 'wrong' }, text)),
+        part('notes', ['time', 'where', 'what', 'who', 'until'], notes.map(noteOf)),
+        standingPart(model, alarms, failures.alarms), asidePart(model, alarms, failures.alarms),
+        part('raised', ['time', 'alarm', 'about', 'priority', 'count', 'newest', 'value'], journal && raised.map(raisedOf),
+            failures.journal),
+        part('acknowledged', ['time', 'alarm', 'about', 'who', 'reason'], journal && acknowledged.map(doneBy), failures.journal),
+        part('shelved', ['time', 'alarm', 'about', 'who', 'reason'], journal && [...shelved, ...aside].map(doneBy), failures.journal),
         make('div', { class: 'sign' }, make('p', {}, say('handover.gives')), make('p', {}, say('handover.takes'))),
     ];
 }
@@ -116,19 +124,21 @@ async function show() {
     if (!['operator', 'engineer'].includes(role))
         throw new Error(say('handover.denied'));
     const span = { from: query.get('from') ?? '-8h', to: query.get('to') ?? 'now' };
-    const missing = []; // names of data that could not be loaded, which the page lists
-    const orElse = (empty) => (error) => {
-        missing.push(error.message);
-        return empty;
+    const failures = {}; // why the alarms or the journal could not be read
+    const failed = (name) => (error) => {
+        failures[name] = error.message;
+        return null;
     };
     const [plant, { list }, alarms, gaps] = await Promise.all([get('plant'), get('notes', span),
-        get('alarms', { limit: 10000 }).catch(orElse({ mode: 'display', alarms: [] })), get('history/gaps', span)]);
-    const journal = await readJournal((args) => get('alarms/journal', args).catch(orElse({ rows: [] })), span.from, span.to);
+        get('alarms', { limit: 10000 }).catch(failed('alarms')), get('history/gaps', span)]);
+    const journal = await readJournal((args) => get('alarms/journal', args), span.from, span.to).catch(failed('journal'));
     clock = zoneClock(plant.plant.time_zone);
     const model = new Model(plant);
-    hearAlarms(model, alarms);
-    journal.cut ||= Boolean(alarms.next_offset);
-    byId('handover').replaceChildren(...pageOf(model, list, journal, [gaps.from_us, gaps.to_us], missing));
+    if (alarms)
+        hearAlarms(model, alarms);
+    if (journal)
+        journal.cut ||= Boolean(alarms?.next_offset);
+    byId('handover').replaceChildren(...pageOf(model, list, alarms && model.alarms, journal, [gaps.from_us, gaps.to_us], failures));
 }
 
 show().catch((error) => byId('handover').replaceChildren(make('p', { class: 'wrong' }, error.message)));

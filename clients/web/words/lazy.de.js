@@ -233,6 +233,7 @@ newest: Zuletzt
 reason: Grund
 ended: entfernt von {who}, {time}
 cut: Liste gekürzt: es gab mehr Alarme
+unread: konnte nicht gelesen werden: {why}
 gives: Übergeben von
 takes: Übernommen von
 denied: Die Übergabe ist für Operatoren: anmelden oder Token eingeben, dann von der Seite aus öffnen

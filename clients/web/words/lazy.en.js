@@ -232,6 +232,7 @@ newest: Latest
 reason: Reason
 ended: removed by {who}, {time}
 cut: List shortened: there were more alarms
+unread: could not be read: {why}
 gives: Handed over by
 takes: Taken over by
 denied: The handover is for operators: sign in or enter a token, then open it from the page

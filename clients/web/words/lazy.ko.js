@@ -228,6 +228,7 @@ newest: 최근 발생
 reason: 사유
 ended: {who} 삭제, {time}
 cut: 일부만 표시: 알람이 더 있었습니다
+unread: 읽을 수 없습니다: {why}
 gives: 인계자
 takes: 인수자
 denied: 인수인계는 운전원용입니다. 로그인하거나 토큰을 입력한 뒤 페이지에서 여세요

@@ -62,6 +62,20 @@ test('the handover page lists notes, alarms, acknowledgements and shelved alarms
     await shoot(page, 'handover');
 });
 
+test('the handover says what could not be read, instead of counting 0', options, async () => {
+    await page.route('**/api/v1/alarms**', (route) => route.fulfill({ status: 503, body: 'busy' }));
+    await page.reload();
+    await page.locator('[data-part=notes] td').first().waitFor();
+    const counts = await page.locator('.counts b').allTextContents();
+    const wrong = await page.locator('[data-part] > .wrong').allTextContents();
+    await page.unroute('**/api/v1/alarms**');
+    await page.reload();
+    await page.locator('[data-part=standing] td').first().waitFor();
+    assert.deepEqual(counts, ['–', '–', '–', '–']);
+    assert.equal(wrong.length, 5);
+    assert.ok(wrong.every((text) => text.startsWith('could not be read: ')), wrong.join());
+});
+
 test('on a phone, each row of the handover is a block of titled lines', options, async () => {
     const screen = page.viewportSize();
     await page.setViewportSize({ width: 390, height: 844 });

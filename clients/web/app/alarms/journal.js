@@ -110,9 +110,9 @@ export class Journal {
             return;
         const get = async (query) => (await ask('api/v1/alarms/journal', query, this.session.token)).json();
         try {
-            const { rows, cut } = await readJournal(get, fromUs / 1e6, toUs === null ? 'now' : toUs / 1e6, this.most);
+            const { rows, cut, failed } = await readJournal(get, fromUs / 1e6, toUs === null ? 'now' : toUs / 1e6, this.most);
             if (number === this.number)
-                Object.assign(this, { rows: rows.map((row) => journalRow(this.session.model, row)), cut, failed: null });
+                Object.assign(this, { rows: rows.map((row) => journalRow(this.session.model, row)), cut, failed });
         } catch (error) {
             if (number === this.number)
                 Object.assign(this, { rows: [], cut: false, failed: error.message });

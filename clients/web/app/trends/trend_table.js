@@ -51,6 +51,7 @@ export class TrendTable {
 
     fill() {
         const { view } = this, { session } = view, isPast = session.time.atUs !== null;
+        const isOld = !isPast && !view.page.overlay.fresh; // true: no messages arrive from the server, so present values are unknown
         for (const name of COLUMNS)
             setText(this.heads[name], say(`trends.${name === 'now' && isPast ? 'then' : name}`));
         setText(this.heads.known, say('trends.known'));
@@ -59,10 +60,10 @@ export class TrendTable {
         for (const [tag, cells] of this.rows) {
             const { value, quality } = session.model.readings[tag.index];
             // counts the present reading, too, because the recorded series ends some seconds before it
-            if (!isPast && view.isLive && quality !== 'bad' && value !== null)
+            if (!isPast && !isOld && view.isLive && quality !== 'bad' && value !== null)
                 this.stats.set(tag, withNewest(this.stats.get(tag), value));
             const stats = this.stats.get(tag), text = (number) => view.numberText(tag, number);
-            setText(cells.now, quality === 'bad' ? say('novalue') : text(value));
+            setText(cells.now, isOld ? '–' : quality === 'bad' ? say('novalue') : text(value));
             for (const name of ['min', 'mean', 'max'])
                 setText(cells[name], text(stats?.[name]));
             setText(cells.known, `${numberText(Math.floor(100 * (stats?.known ?? 0)), 0)} %`);

@@ -12,6 +12,7 @@ import { byId, icon, make, setText } from '../common/dom.js';
 import { keepPanelsAbove } from './bar_top.js';
 
 const AGO_S = [3600, 8 * 3600, 86400, 7 * 86400], FIRST_S = 86400, TICK_MS = 250, HOUR_S = 3600;
+const SAME_US = 60e6; // largest deviation from the chosen span between the halves' instants
 const SHARED = PARAMS.filter((name) => !['split', 'backdrop'].includes(name));
 
 export class Compare {
@@ -135,7 +136,11 @@ export class Compare {
         this.show();
     }
 
+    // Shows the right half's instant. Deselects a chosen span, such as "1 day earlier", once the left half has moved.
     show() {
+        const leftUs = this.session.time.atUs ?? this.session.clockUs(), agoUs = Number(this.ago.value) * 1e6;
+        if (agoUs > 0 && Math.abs(leftUs - agoUs - this.atUs) > SAME_US)
+            this.ago.value = '';
         if (document.activeElement !== this.date)
             this.date.value = this.atUs === null ? '' : fieldText(this.atUs, this.zone);
         setText(this.said, this.atUs === null ? say('time.now') : '');
