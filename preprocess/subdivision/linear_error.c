@@ -270,11 +270,17 @@ double linear_error_rim_of(const struct linear_error *linear, const struct inter
     return (double)rim_m;
 }
 
+/* Returns the factor by which the lengths over which the weights of a group change are shorter than with a power of 2. */
+static float scale_of(const struct linear_error_group *group)
+{
+    return fminf(1, 2 / group->of.power);
+}
+
 double linear_error_nearest_of(const struct linear_error *linear, const struct interp_norm *norms)
 {
     float nearest_m = INFINITY;
     for (size_t g = 0; g < linear->group_count; g++)
-        nearest_m = fminf(nearest_m, norms[DISTANCE_EUCLIDEAN * linear->group_count + g].near_m);
+        nearest_m = fminf(nearest_m, scale_of(&linear->groups[g]) * norms[DISTANCE_EUCLIDEAN * linear->group_count + g].near_m);
     return min_of((double)nearest_m, linear_error_rim_of(linear, norms));
 }
 
@@ -282,9 +288,11 @@ double linear_error_nearest(const struct linear_error *linear, const float point
 {
     struct corner_room room;
     size_t all = interp_padded(linear->sensor_count);
-    float *straight_m = room_for(&room, all), nearest_m;
+    float *straight_m = room_for(&room, all), nearest_m, scale = 1;
     interp_euclidean(point_m, (const float *const *)linear->axes_m, all, straight_m);
-    nearest_m = interp_least(straight_m, all);
+    for (size_t g = 0; g < linear->group_count; g++)
+        scale = fminf(scale, scale_of(&linear->groups[g]));
+    nearest_m = scale * interp_least(straight_m, all);
     room_finish(&room);
     return (double)nearest_m;
 }
