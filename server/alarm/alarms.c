@@ -509,12 +509,13 @@ static void look_at_devices(struct alarms *alarms, struct instant now)
 }
 
 /* Returns true if a tag needs its own BAD alarm again, which was suppressed because the device's LINK alarm reported the
-   failure: the device has answered again for the tag's stale time, but sent no reading of this tag. */
+   failure: the device has no longer been lost for the tag's stale time, but the tag is still Bad. The device may have returned
+   with errors only, so no tag need be usable. */
 static bool calls_by_itself(const struct alarms *alarms, const struct alarm *alarm, int64_t mono_ns)
 {
     const struct alarm_device *device = &alarms->devices->list[alarms->devices->of_tag[alarm->tag]];
     double stale_s = fmin(alarms->plant->tags[alarm->tag].validity.stale_s, LONGEST_RETURN_S);
-    return device->usable > 0 && (double)(mono_ns - device->back_ns) >= stale_s * 1e9;
+    return device->back_ns && (double)(mono_ns - device->back_ns) >= stale_s * 1e9;
 }
 
 static void call_those_left(struct alarms *alarms, struct instant now)

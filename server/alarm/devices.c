@@ -97,7 +97,7 @@ void devices_put(struct devices *devices, int tag, enum device_status status, in
     device->gone += (status == DEVICE_GONE) - (devices->statuses[tag] == DEVICE_GONE);
     devices->statuses[tag] = (uint8_t)status;
     device->changed = true;
-    if (!device->usable)
+    if (device_is_lost(device))
         device->back_ns = 0;
     else if (!device->back_ns)
         device->back_ns = mono_ns;

@@ -12,7 +12,8 @@ struct alarm_device {
     char *name; /* name of the source, followed by the unit if the source has several: "plc1", "gateway/7" */
     int source, unit;
     int usable, gone; /* usable: number of the device's tags with status DEVICE_USABLE; gone: with status DEVICE_GONE */
-    int64_t back_ns;  /* monotonic time since when at least one tag of the device has been usable; 0: no tag is */
+    /* monotonic time since when the device has not been lost (device_is_lost()); 0: it is lost, or no tag has reported yet */
+    int64_t back_ns;
     int alarm;        /* index of the device's LINK alarm, which is raised when the device does not answer; -1: none */
     bool changed;     /* true: the status of a tag of the device changed since alarms.c last evaluated the device */
 };

@@ -470,6 +470,24 @@ TEST(a_lost_device_is_one_alarm)
     assert_int_equal(s->told[1], ALARM_BAD);
 }
 
+/* A lost device returns, but answers every request with an error. Its LINK alarm ends, so each tag gets an alarm of its own. */
+TEST(a_device_that_returns_with_errors_only_is_not_silent)
+{
+    struct stage *s = stage_create(ALARMS_LOCAL);
+    hear_all(s, 1, 50, QUALITY_GOOD);
+    hear(s, 2, 2, 0, QUALITY_GOOD); /* SD is 0, so it does not suppress PT's alarms */
+    hear_all(s, 10, 0, QUALITY_BAD_COMMUNICATION_ERROR);
+    tick(s, 12);
+    assert_string_equal(word(s, 0, ALARM_BAD), "suppressed");
+    assert_string_equal(word(s, 1, ALARM_BAD), "suppressed");
+    s->log[0] = 0;
+    hear_all(s, 20, 0, QUALITY_BAD_CONFIGURATION);
+    tick(s, 24);
+    assert_told(s, "20 a.LINK clear: unacknowledged > returned\n");
+    tick(s, 25);
+    assert_told(s, "25 TT.BAD call: suppressed > unacknowledged\n25 PT.BAD call: suppressed > unacknowledged\n");
+}
+
 /* A device's tags go stale one after another. The first tag's own alarm is merged into the device's alarm that follows, unless
    somebody has acknowledged the tag's alarm before. */
 TEST(those_that_went_before_are_carried_too)
