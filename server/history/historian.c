@@ -43,9 +43,15 @@ static const int64_t TICK_NS = NS_PER_S, TIDY_NS = 1200 * NS_PER_S, KEEP_NS = 60
    Otherwise the tag's recorded line would end at that sample. */
 static const int64_t REPEAT_US = 10 * US_PER_S;
 
+struct loss { /* samples that could not be recorded because too many waited */
+    size_t count;
+    int64_t from_us, to_us; /* UTC times of the first and the last lost sample */
+};
+
 struct historian_queue {
     struct sample_event *at; /* samples in order of arrival */
-    size_t count, capacity, lost;
+    size_t count, capacity;
+    struct loss loss;
 };
 struct now {
     int64_t mono_ns, utc_ns;
@@ -67,6 +73,8 @@ struct historian {
     struct recorder *recorder;
     struct snapshot *snapshot;
     struct recorder_rows waiting, held;
+    size_t max_waiting; /* maximum number of rows in `waiting` */
+    struct loss loss;   /* samples lost since samples were last recorded; count 0: none */
     /* rows that the previous run could not write to history, read from its spool file; written before any others */
     struct spool_rows spooled;
     char *spool_path; /* path of the previous run's spool file; NULL: there is none */
@@ -88,16 +96,25 @@ struct historian {
 
 /* --- taking samples from the store -------------------------------------------------------------------------------------------- */
 
+static void add_loss(struct loss *loss, const struct loss *more)
+{
+    if (!loss->count)
+        loss->from_us = more->from_us;
+    loss->to_us = more->to_us;
+    loss->count += more->count;
+}
+
 static void queue_samples(struct historian *historian, const struct sample_event *samples, size_t count)
 {
     pthread_mutex_lock(&historian->thread.lock);
     struct historian_queue *queue = &historian->queue;
-    if (queue->count + count <= QUEUE_MAX) {
+    /* markers always fit: without TAG_LEADS, for example, this daemon would go on as a standby */
+    if (queue->count + count <= QUEUE_MAX || samples->tag < 0) {
         mem_grow(&queue->at, &queue->capacity, queue->count + count, sizeof(*queue->at));
         memcpy(queue->at + queue->count, samples, count * sizeof(*samples));
         queue->count += count;
     } else {
-        queue->lost += count;
+        add_loss(&queue->loss, &(struct loss){ count, samples[0].utc_ns / 1000, samples[count - 1].utc_ns / 1000 });
     }
     pthread_mutex_unlock(&historian->thread.lock);
 }
@@ -141,11 +158,21 @@ void historian_lead(struct historian *historian)
     store_listen(historian->store, on_sample, historian);
 }
 
+static void lose(struct historian *historian, const struct loss *loss)
+{
+    if (!historian->loss.count)
+        log_event(historian->log, LOG_ERROR, EVENT_HISTORY_LOST,
+                  "history: samples are lost from now on, because too many wait to be recorded (at most %zu points)",
+                  historian->max_waiting);
+    add_loss(&historian->loss, loss);
+    counter_inc(historian->counters.lost, (int64_t)loss->count);
+}
+
 static void put(struct historian *historian, int tag, const struct history_point *point)
 {
     size_t before = historian->waiting.count;
-    if (before >= WAITING_MAX) {
-        counter_inc(historian->counters.lost, 1);
+    if (before >= historian->max_waiting) {
+        lose(historian, &(struct loss){ 1, point->t_us, point->t_us });
         return;
     }
     recorder_put(historian->recorder, tag, point, &historian->waiting);
@@ -266,10 +293,10 @@ static void take_events(struct historian *historian, const struct now *now, int6
     if (!left_out)
         leave_out(historian, (now->utc_ns - step_ns) / 1000);
     counter_inc(historian->counters.samples, (int64_t)taken.count);
-    counter_inc(historian->counters.lost, (int64_t)taken.lost);
-    if (taken.lost)
-        log_err(historian->log, "history: %zu samples (readings) were not recorded, because the queue is full", taken.lost);
-    taken.count = taken.lost = 0;
+    if (taken.loss.count)
+        lose(historian, &taken.loss);
+    taken.count = 0;
+    taken.loss = (struct loss){ 0 };
     historian->taken = taken;
 }
 
@@ -573,12 +600,32 @@ static void end_lines(struct historian *historian, int64_t utc_ns)
     recorder_end(historian->recorder, &historian->waiting);
 }
 
+/* Call once points can be recorded again after samples were lost. Ends every tag's line just before the first lost sample, so that
+   no value is known for that time, and notes the gap. The added points may exceed max_waiting by one for each tag. */
+static void end_loss(struct historian *historian)
+{
+    const struct loss loss = historian->loss;
+    struct history_point newest;
+    historian->loss.count = 0;
+    for (size_t i = 0; i < historian->plant->tag_count; i++)
+        if (recorder_newest(historian->recorder, (int)i, &newest) && history_point_usable(&newest))
+            recorder_put(historian->recorder, (int)i, &(struct history_point){ loss.from_us, NAN, QUALITY_BAD_NO_COMMUNICATION },
+                         &historian->waiting);
+    char *text = mem_printf(HISTORY_GAP_TEXT, (double)(loss.to_us - loss.from_us) / 1e6);
+    log_event(historian->log, LOG_WARN, EVENT_HISTORY_LOST, "history: %zu samples were lost: %s", loss.count, text);
+    if (historian->file)
+        month_file_note(historian->file, loss.from_us, "gap", text);
+    mem_free(text);
+}
+
 static void tick(struct historian *historian, bool last)
 {
     const struct now now = look_at_clocks();
     int64_t mono_ns = now.mono_ns, utc_ns = now.utc_ns, step_ns = watch_clock(historian, &now);
     /* ignores steps of a standby's own clock, because its samples have the leading daemon's times */
     step_ns = historian->stands_by ? 0 : step_ns;
+    if (historian->loss.count && (historian->waiting.count < historian->max_waiting || last))
+        end_loss(historian);
     take_events(historian, &now, step_ns);
     if (!historian->stands_by)
         take_qualities(historian, mono_ns, utc_ns);
@@ -731,6 +778,7 @@ struct historian *historian_start(const struct historian_params *params)
     historian->folder = mem_strdup(params->folder);
     historian->recovered = params->follows;
     historian->stands_by = params->stands_by;
+    historian->max_waiting = params->max_waiting ? params->max_waiting : WAITING_MAX;
     historian->tags = history_tags(params->plant);
     historian->recorder = recorder_create(params->plant, clock_utc_ns() / 1000);
     historian->snapshot = snapshot_create(params->plant->tag_count);

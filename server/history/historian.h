@@ -23,6 +23,7 @@ struct historian_params {
     bool follows;
     /* time spans whose points must still be read from PostgreSQL, as returned by historian_end(); copied; NULL: none */
     const struct postgres_owed *owed;
+    size_t max_waiting; /* maximum number of rows kept in memory while the disk cannot be written; 0: the default, 4 million */
 };
 
 struct historian;

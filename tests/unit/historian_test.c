@@ -65,14 +65,19 @@ static void begin(struct historian_setup *s)
     s->tags = history_tags(s->plant);
 }
 
-static void start(struct historian_setup *s)
+static void start_with_limit(struct historian_setup *s, size_t max_waiting)
 {
     char *folder = temp_path(s->folder, "history");
     const struct historian_params params = {
-        .log = s->log, .counters = s->counters, .plant = s->plant, .store = s->store, .folder = folder
+        .log = s->log, .counters = s->counters, .plant = s->plant, .store = s->store, .folder = folder, .max_waiting = max_waiting
     };
     s->historian = historian_start(&params);
     assert_non_null(s->historian);
+}
+
+static void start(struct historian_setup *s)
+{
+    start_with_limit(s, 0);
 }
 
 static void end(struct historian_setup *s)
@@ -458,6 +463,34 @@ CASE(a_folder_that_comes_later_is_used)
     struct history_series series;
     assert_true(points_of(s, 0, &series) > 0);
     assert_true(series.points.at[0].value == 5);
+}
+
+/* The disk cannot be written for so long that no more points fit into memory. The lost time must have no values, although the tags never
+   become stale, and the gap must be noted. */
+CASE(lost_samples_leave_a_gap)
+{
+    char *path = temp_write_text(s->folder, "history", "not a folder");
+    struct history_series series;
+    for (int i = 0; i < TAGS; i++)
+        s->plant->tags[i].validity.stale_s = PLANT_NEVER_STALE_S;
+    start_with_limit(s, 8 * TAGS);
+    for (int i = 0; i < 20; i++) {
+        write_all(s, bent(i));
+        sleep_ns(100 * NS_PER_MS);
+    }
+    sleep_ns(1200 * NS_PER_MS);
+    assert_true(counted(s, "plantcast_history_lost_total") > 0);
+    assert_int_equal(unlink(path), 0);
+    wait_until_counted(s, "plantcast_history_good", 1);
+    sleep_ns(1200 * NS_PER_MS);
+    int64_t after_ns = write_all(s, 5);
+    historian_stop(&s->historian);
+    size_t count = points_of(s, 0, &series), gaps = 0;
+    for (size_t i = 0; i < count; i++)
+        gaps += isnan(series.points.at[i].value) && series.points.at[i].quality == QUALITY_BAD_NO_COMMUNICATION &&
+                series.points.at[i].t_us < after_ns / 1000;
+    assert_int_equal(gaps, 1);
+    assert_int_equal(events_of(s, "gap", after_ns), 1);
 }
 
 static bool has_point(const struct history_series *series, int64_t utc_ns, double value)
