@@ -332,7 +332,7 @@ void alarms_touch(struct alarms *alarms, int index)
 void alarms_watch(struct alarms *alarms, int index)
 {
     struct alarm *alarm = &alarms->list[index];
-    if (alarm->timed || (alarm->condition.pending == CONDITION_RESTS && !alarm->until.mono_ns))
+    if (alarm->timed || (!condition_is_timed(&alarm->condition) && !alarm->until.mono_ns))
         return;
     mem_grow(&alarms->timed, &alarms->timed_capacity, alarms->timed_count + 1, sizeof(*alarms->timed));
     alarms->timed[alarms->timed_count++] = index;
@@ -443,7 +443,7 @@ static void put_value(struct alarms *alarms, int index, const struct sample_even
     set_held(alarms, index, bad);
     if (bad) {
         advance(alarms, index, now);
-        condition_hold(&alarm->condition);
+        condition_hold(&alarm->condition, now.mono_ns);
     } else if (is_bit) {
         put(alarms, index, event->value != 0 ? CONDITION_BEYOND : CONDITION_CLEAR, event->value, now);
     } else {
@@ -628,7 +628,7 @@ void alarms_tick(struct alarms *alarms, const struct snapshot *snapshot)
         advance(alarms, index, now);
         if (alarm->until.mono_ns && now.mono_ns >= alarm->until.mono_ns)
             end_shelf(alarms, index, now);
-        alarm->timed = alarm->condition.pending != CONDITION_RESTS || alarm->until.mono_ns;
+        alarm->timed = condition_is_timed(&alarm->condition) || alarm->until.mono_ns;
         if (alarm->timed)
             alarms->timed[kept++] = index;
     }

@@ -10,6 +10,11 @@ enum condition_side condition_side(enum alarm_kind kind, double limit, double de
     return alarm_reaches(value, high ? limit - deadband : limit + deadband, high) ? CONDITION_BETWEEN : CONDITION_CLEAR;
 }
 
+bool condition_is_timed(const struct condition *condition)
+{
+    return condition->pending == CONDITION_COMES || condition->pending == CONDITION_GOES;
+}
+
 static bool turn(struct condition *condition)
 {
     condition->active = !condition->active;
@@ -20,7 +25,7 @@ static bool turn(struct condition *condition)
 bool condition_advance(struct condition *condition, const struct condition_delays *delays, int64_t now_ns, int64_t *at_ns)
 {
     int64_t delay_ns = condition->pending == CONDITION_COMES ? delays->on_ns : delays->off_ns;
-    if (condition->pending == CONDITION_RESTS || now_ns - condition->since_ns < delay_ns)
+    if (!condition_is_timed(condition) || now_ns - condition->since_ns < delay_ns)
         return false;
     *at_ns = condition->since_ns + delay_ns;
     return turn(condition);
@@ -35,14 +40,19 @@ bool condition_put(struct condition *condition, const struct condition_delays *d
     }
     if ((condition->active ? delays->off_ns : delays->on_ns) <= 0)
         return turn(condition);
-    if (condition->pending == CONDITION_RESTS) {
+    if (!condition_is_timed(condition)) {
+        condition->since_ns = now_ns - (condition->pending == CONDITION_SUSPENDED ? condition->used_ns : 0);
         condition->pending = condition->active ? CONDITION_GOES : CONDITION_COMES;
-        condition->since_ns = now_ns;
     }
     return false;
 }
 
-void condition_hold(struct condition *condition)
+void condition_hold(struct condition *condition, int64_t now_ns)
 {
-    condition->pending = CONDITION_RESTS;
+    if (condition->pending == CONDITION_COMES) {
+        condition->used_ns = now_ns - condition->since_ns;
+        condition->pending = CONDITION_SUSPENDED;
+    } else if (condition->pending == CONDITION_GOES) {
+        condition->pending = CONDITION_RESTS;
+    }
 }

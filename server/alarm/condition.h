@@ -11,9 +11,11 @@
 
 struct condition { /* zero-initialised: an inactive condition without a running delay */
     bool active;
-    /* which delay is running: none, the on delay (before the condition becomes active), or the off delay */
-    enum { CONDITION_RESTS, CONDITION_COMES, CONDITION_GOES } pending;
-    int64_t since_ns; /* monotonic time when the running delay began */
+    /* which delay is running: none, the on delay (before the condition becomes active), or the off delay. CONDITION_SUSPENDED: the
+       on delay has stopped while the tag's value is unknown, and continues with the next known value */
+    enum { CONDITION_RESTS, CONDITION_COMES, CONDITION_GOES, CONDITION_SUSPENDED } pending;
+    int64_t since_ns; /* monotonic time when the running delay began, moved forward by the time for which it was suspended */
+    int64_t used_ns;  /* CONDITION_SUSPENDED: time that had passed of the on delay */
 };
 
 struct condition_delays {
@@ -31,6 +33,9 @@ bool condition_advance(struct condition *condition, const struct condition_delay
 /* Applies a sample to the condition. side: side of the limit on which the sample's value lies. Call condition_advance() with
    the sample's time first. Returns true if the condition changed. */
 bool condition_put(struct condition *condition, const struct condition_delays *delays, enum condition_side side, int64_t now_ns);
-void condition_hold(struct condition *condition); /* cancels a running delay, because the tag's value is unknown from now on */
+/* The tag's value is unknown from now_ns on: suspends a running on delay, and cancels a running off delay, so that no alarm clears
+   before its value has been inside the limit for the whole off delay. */
+void condition_hold(struct condition *condition, int64_t now_ns);
+bool condition_is_timed(const struct condition *condition); /* returns true if the condition can change by the passing of time alone */
 
 #endif

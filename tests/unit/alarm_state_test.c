@@ -177,11 +177,34 @@ TEST(delays_run_whole)
     /* the alarm is dated 23 s, when the delay ended, although the condition was evaluated at 99 s */
     assert_true(c.active && at == 23 * S);
     assert_false(condition_put(&c, &delays, CONDITION_CLEAR, 100 * S));
-    condition_hold(&c);
+    condition_hold(&c, 101 * S);
     assert_false(condition_advance(&c, &delays, 200 * S, &at)); /* nothing is known: nothing goes */
     condition_put(&c, &delays, CONDITION_CLEAR, 200 * S);
     assert_true(condition_advance(&c, &delays, 205 * S, &at));
     assert_false(c.active);
+}
+
+/* While a tag is Bad, its on delay is suspended: otherwise a tag that is Bad now and then would never raise its alarms. */
+TEST(an_on_delay_continues_after_bad_samples)
+{
+    const struct condition_delays delays = { 3 * S, 5 * S };
+    struct condition c = { 0 };
+    int64_t at = 0;
+    condition_put(&c, &delays, CONDITION_BEYOND, 10 * S);
+    condition_hold(&c, 12 * S);
+    condition_hold(&c, 13 * S);
+    assert_false(condition_is_timed(&c));
+    assert_false(condition_advance(&c, &delays, 50 * S, &at));
+    condition_put(&c, &delays, CONDITION_BEYOND, 60 * S);
+    assert_false(condition_advance(&c, &delays, 61 * S - 1, &at));
+    assert_true(condition_advance(&c, &delays, 62 * S, &at));
+    assert_true(c.active && at == 61 * S);
+    c = (struct condition){ 0 };
+    condition_put(&c, &delays, CONDITION_BEYOND, 10 * S);
+    condition_hold(&c, 12 * S);
+    condition_put(&c, &delays, CONDITION_CLEAR, 13 * S); /* the value is inside the limit again, so the delay starts from zero */
+    condition_put(&c, &delays, CONDITION_BEYOND, 14 * S);
+    assert_false(condition_advance(&c, &delays, 17 * S - 1, &at));
 }
 
 static bool turns(int side, bool active)
