@@ -395,6 +395,8 @@ static void turned(struct alarms *alarms, int index, double value, struct instan
     struct alarm *alarm = &alarms->list[index];
     const struct alarm_device *carrier = alarm->condition.active ? carrier_of(alarms, alarm) : NULL;
     alarm->rule.carried = carrier != NULL;
+    if (alarm->condition.active && alarm->acknowledgement_bad)
+        alarm->acknowledged_there = false; /* the last known acknowledgement was of an earlier alarm */
     step(alarms, index,
          &(struct alarm_change){ .event = alarm->condition.active ? ALARM_RAISE : ALARM_CLEAR,
                                  .utc_ns = at.utc_ns,
@@ -462,6 +464,7 @@ static void put_sample(struct alarms *alarms, const struct feed *feed, const str
         put(alarms, feed->alarm, bad ? CONDITION_BEYOND : CONDITION_CLEAR, NAN, (struct instant){ event->mono_ns, event->utc_ns });
         break;
     case FEED_ACKNOWLEDGED:
+        alarms->list[feed->alarm].acknowledgement_bad = bad;
         if (!bad)
             alarms->list[feed->alarm].acknowledged_there = event->value != 0;
         follow_acknowledgement(alarms, feed->alarm, (struct instant){ event->mono_ns, event->utc_ns });
@@ -626,7 +629,8 @@ void alarms_tick(struct alarms *alarms, const struct snapshot *snapshot)
         int index = alarms->timed[i];
         struct alarm *alarm = &alarms->list[index];
         advance(alarms, index, now);
-        if (alarm->until.mono_ns && now.mono_ns >= alarm->until.mono_ns)
+        bool is_over = now.mono_ns >= alarm->until.mono_ns || (alarm->until_restored && now.utc_ns >= alarm->until.utc_ns);
+        if (alarm->until.mono_ns && is_over)
             end_shelf(alarms, index, now);
         alarm->timed = condition_is_timed(&alarm->condition) || alarm->until.mono_ns;
         if (alarm->timed)
@@ -688,6 +692,7 @@ const struct alarm *alarms_at(const struct alarms *alarms, int index)
 
 int alarms_find(const struct alarms *alarms, int tag, enum alarm_kind kind)
 {
+        alarm->until_restored &= !shelves;
     for (int i = alarms->first_alarm[tag]; i < alarms->first_alarm[tag + 1]; i++)
         if (alarms->list[alarms->by_tag[i]].kind == kind)
             return alarms->by_tag[i];

@@ -39,6 +39,9 @@ struct alarm {
     /* --- below: private to alarms*.c */
     struct condition condition;
     struct condition_delays delays;
+    bool acknowledgement_bad; /* true: the other system's acknowledgement bit is Bad, so acknowledged_there is its last known state */
+    /* true: the shelving was restored. It also ends at until.utc_ns, because the clock may have been wrong at the start */
+    bool until_restored;
     /* raised_mono_ns: monotonic time when the alarm was last raised; recent_ns: ring buffer of the last such times */
     int64_t raised_mono_ns, recent_ns[ALARM_RECENT];
     unsigned raised_count;

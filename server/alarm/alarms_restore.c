@@ -46,9 +46,12 @@ void alarms_restore(struct alarms *alarms, int index, const struct alarm *saved,
 {
     struct alarm from = *saved;
     /* the shelving time may have ended while the daemon was not running; the next alarms_tick() then ends the shelving, because
-       it is set to end in 1 ns */
+       it is set to end in 1 ns. If the clock is years behind, the shelving still ends after the longest time allowed */
+    int64_t rest_ns = from.until.utc_ns > now.utc_ns ? from.until.utc_ns - now.utc_ns : 1;
     if (from.until.utc_ns)
-        from.until.mono_ns = now.mono_ns + (from.until.utc_ns > now.utc_ns ? from.until.utc_ns - now.utc_ns : 1);
+        from.until.mono_ns = now.mono_ns + (rest_ns > ALARM_LONGEST_SHELF_NS ? ALARM_LONGEST_SHELF_NS : rest_ns);
+    alarms->list[index].until_restored = true;
+    alarms->list[index].acknowledged_there = alarms->list[index].rule.forgets && from.state.active && !from.state.unacknowledged;
     /* held true: the alarm keeps its restored state until its tag's next sample; BAD and LINK alarms are never held */
     alarms->list[index].held = alarms->list[index].kind != ALARM_BAD && alarms->list[index].kind != ALARM_LINK;
     alarms->list[index].raised_mono_ns = now.mono_ns - (from.raised_utc_ns ? now.utc_ns - from.raised_utc_ns : 0);
@@ -97,6 +100,9 @@ void alarms_adopt(struct alarms *alarms, const struct alarms *before)
         alarm->raised_mono_ns = from->raised_mono_ns;
         memcpy(alarm->recent_ns, from->recent_ns, sizeof(alarm->recent_ns));
         alarm->raised_count = from->raised_count;
+        alarm->acknowledged_there = from->acknowledged_there;
+        alarm->acknowledgement_bad = from->acknowledgement_bad;
+        alarm->until_restored = from->until_restored;
         if (same_limit(alarm, from))
             alarm->condition = from->condition;
         take(alarms, index, from);

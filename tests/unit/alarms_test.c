@@ -278,6 +278,30 @@ TEST(what_was_kept_is_taken_up)
 {
     struct stage *s = stage_create(ALARMS_LOCAL), *next;
     hear(s, 1, 0, 95, QUALITY_GOOD);
+    /* the acknowledgement bit turns Bad while it is 1. That acknowledgement does not apply to a new alarm */
+    hear(s, 7, 4, 1, QUALITY_GOOD);
+    hear(s, 8, 4, 0, QUALITY_BAD_CONFIGURATION);
+    hear(s, 9, 3, 1, QUALITY_GOOD);
+    assert_string_equal(word(s, 0, ALARM_HH), "acknowledged");
+    s->log[0] = 0;
+    hear(s, 10, 3, 0, QUALITY_GOOD);
+    hear(s, 11, 3, 1, QUALITY_GOOD);
+    assert_told(s, "10 TT.HH clear: acknowledged > normal\n11 TT.HH raise: normal > unacknowledged\n");
+    hear(s, 12, 4, 1, QUALITY_GOOD);
+    assert_told(s, "12 TT.HH acknowledge: unacknowledged > acknowledged\n12 B2.BAD clear: active > normal\n");
+    /* after a reload and after a restart, an acknowledged alarm stays acknowledged although the acknowledgement bit is Bad */
+    hear(s, 13, 4, 0, QUALITY_BAD_CONFIGURATION);
+    for (int restart = 0; restart < 2; restart++) {
+        struct stage *next = stage_create(ALARMS_MIRROR);
+        int index = alarms_find(s->alarms, 0, ALARM_HH);
+        if (restart)
+            alarms_restore(next->alarms, index, alarms_at(s->alarms, index), at(14));
+        else
+            alarms_adopt(next->alarms, s->alarms);
+        hear(next, 15, 3, 1, QUALITY_GOOD);
+        hear(next, 15, 4, 0, QUALITY_BAD_CONFIGURATION);
+        assert_string_equal(word(next, 0, ALARM_HH), "acknowledged");
+    }
     act(s, 2, 0, ALARM_H, ALARM_SHELVE, 60);
     next = stage_create(ALARMS_LOCAL);
     for (int kind = ALARM_H; kind <= ALARM_HH; kind++)
@@ -306,6 +330,35 @@ static void set_unit(struct stage *s, const char *unit)
 {
     mem_free(s->plant->tags[0].unit);
     s->plant->tags[0].unit = mem_strdup(unit);
+}
+
+/* The clock is wrong at the start, as on a machine without a clock chip, and is corrected later. */
+TEST(a_restored_shelf_ends_although_the_clock_was_wrong)
+{
+    struct stage *s = stage_create(ALARMS_LOCAL), *next;
+    const int64_t year_ns = 365 * 86400 * S;
+    int index = alarms_find(s->alarms, 0, ALARM_H);
+    hear(s, 1, 0, 85, QUALITY_GOOD);
+    assert_int_equal(act(s, 2, 0, ALARM_H, ALARM_SHELVE, 60), REFUSAL_NONE);
+    for (int corrected = 0; corrected < 2; corrected++) {
+        next = stage_create(ALARMS_LOCAL);
+        hear(next, 1, 0, 85, QUALITY_GOOD);
+        alarms_restore(next->alarms, index, alarms_at(s->alarms, index), (struct instant){ 5 * S, UTC + 40 * S - year_ns });
+        next->snapshot->taken_mono_ns = corrected ? 27 * S : 5 * S + ALARM_LONGEST_SHELF_NS;
+        next->snapshot->taken_utc_ns = corrected ? UTC + 62 * S : UTC + 40 * S - year_ns + ALARM_LONGEST_SHELF_NS;
+        next->snapshot->taken_mono_ns--, next->snapshot->taken_utc_ns--;
+        alarms_tick(next->alarms, next->snapshot);
+        assert_string_equal(word(next, 0, ALARM_H), "shelved");
+        next->snapshot->taken_mono_ns++, next->snapshot->taken_utc_ns++;
+        alarms_tick(next->alarms, next->snapshot);
+        assert_string_equal(word(next, 0, ALARM_H), "unacknowledged");
+    }
+    /* if the clock was wrong when the operator shelved the alarm, its correction does not end the shelving early */
+    assert_int_equal(act(next, 30, 0, ALARM_H, ALARM_SHELVE, 60), REFUSAL_NONE);
+    next->snapshot->taken_mono_ns = 31 * S;
+    next->snapshot->taken_utc_ns = UTC + year_ns;
+    alarms_tick(next->alarms, next->snapshot);
+    assert_string_equal(word(next, 0, ALARM_H), "shelved");
 }
 
 TEST(a_reload_keeps_what_stays)
