@@ -539,6 +539,15 @@ static enum device_status status_of(const struct alarms *alarms, size_t tag, uin
     return lost ? DEVICE_GONE : device_status_of(quality);
 }
 
+/* Returns true if alarms ignore a sample for now. A derived tag repeats the quality of its inputs as a sample: without a sample of
+   its own so far, it waits like them for a first reading (is_still_waiting()). */
+static bool is_ignored(const struct alarms *alarms, const struct sample_event *event)
+{
+    if (event->quality == QUALITY_BAD_WAITING)
+        return true;
+    return alarms->devices->of_tag[event->tag] < 0 && !alarms->seen[event->tag].sampled && device_status_of(event->quality) == DEVICE_GONE;
+}
+
 /* evaluates the samples' devices before their tags, so that a device's LINK alarm can suppress the BAD alarms of the tags */
 void alarms_put(struct alarms *alarms, const struct sample_event *event, size_t count)
 {
@@ -549,9 +558,10 @@ void alarms_put(struct alarms *alarms, const struct sample_event *event, size_t 
     for (size_t i = 0; i < count; i++) {
         int tag = event[i].tag;
         struct last_sample *seen = &alarms->seen[tag];
-        if (event[i].quality == QUALITY_BAD_WAITING)
+        if (is_ignored(alarms, &event[i]))
             continue;
         seen->sampled = true;
+        seen->recheck = false;
         seen->bad = quality_is_bad(event[i].quality);
         for (int k = alarms->first_feed[tag]; k < alarms->first_feed[tag + 1]; k++)
             put_sample(alarms, &alarms->feeds[k], &event[i]);
@@ -561,48 +571,56 @@ void alarms_put(struct alarms *alarms, const struct sample_event *event, size_t 
 
 /* --- time ------------------------------------------------------------------------------------------------------------------- */
 
-static bool is_waiting_too_long(struct alarms *alarms, int tag, int64_t mono_ns)
+/* Returns true while a Bad quality of the tag does not count yet: the tag has had no reading since this daemon began to evaluate
+   alarms or since a reload discarded its reading, and its stale time is not over. If its source cannot be read, it waits for at
+   most LONGEST_RETURN_S: the tag of a source that reports once an hour has a stale time of hours. */
+static bool is_still_waiting(struct alarms *alarms, size_t tag, uint32_t quality, int64_t mono_ns)
 {
+    struct last_sample *seen = &alarms->seen[tag];
     double stale_s = alarms->plant->tags[tag].validity.stale_s;
-    if (stale_s >= PLANT_NEVER_STALE_S)
-        stale_s = LONGEST_RETURN_S;
-    return (double)(mono_ns - alarms->begun_ns) >= stale_s * 1e9;
+    if (!quality_is_bad(quality) || (seen->sampled && quality != QUALITY_BAD_WAITING)) {
+        seen->waits_since_ns = 0;
+        return false;
+    }
+    if (!seen->waits_since_ns)
+        seen->waits_since_ns = mono_ns;
+    if (stale_s >= PLANT_NEVER_STALE_S || quality != QUALITY_BAD_WAITING)
+        stale_s = fmin(stale_s, LONGEST_RETURN_S);
+    return (double)(mono_ns - seen->waits_since_ns) < stale_s * 1e9;
 }
 
 /* Returns true if no sample event need be created for the tag's current quality: no alarm depends on the tag, or its alarms
    have already seen that quality. */
-static bool is_no_news(const struct alarms *alarms, size_t tag, bool bad, uint32_t quality)
+static bool is_no_news(const struct alarms *alarms, size_t tag, uint32_t quality)
 {
     const struct last_sample *seen = &alarms->seen[tag];
+    bool bad = quality_is_bad(quality);
     int of = alarms->devices->of_tag[tag];
     bool counts = of >= 0 && alarms->devices->list[of].alarm >= 0;
     if (alarms->first_feed[tag] == alarms->first_feed[tag + 1] && !counts)
         return true;
+    if (seen->recheck)
+        return false;
     if (!seen->sampled)
         return !bad;
     return seen->bad == bad && (!counts || alarms->devices->statuses[tag] == status_of(alarms, tag, quality));
 }
 
-/* Creates sample events for tags that became stale after their last sample, or that have waited too long for a first sample.
-   Evaluates the alarms with these events. */
+/* Creates sample events for tags that became stale after their last sample, that have waited too long for a first sample, or
+   whose alarms a reload may have changed. Evaluates the alarms with these events. */
 static void look_at_qualities(struct alarms *alarms, const struct snapshot *now)
 {
     size_t count = 0;
-    if (!alarms->begun_ns)
-        alarms->begun_ns = now->taken_mono_ns;
     for (size_t i = 0; i < now->count; i++) {
         const struct reading *reading = &now->readings[i];
-        bool bad = quality_is_bad(reading->quality);
-        if (is_no_news(alarms, i, bad, reading->quality))
+        if (is_still_waiting(alarms, i, reading->quality, now->taken_mono_ns))
             continue;
-        uint32_t quality = reading->quality;
-        if (quality == QUALITY_BAD_WAITING) {
-            if (!is_waiting_too_long(alarms, (int)i, now->taken_mono_ns))
-                continue;
-            quality = QUALITY_BAD_NO_COMMUNICATION;
-        }
+        uint32_t quality = reading->quality == QUALITY_BAD_WAITING ? QUALITY_BAD_NO_COMMUNICATION : reading->quality;
+        if (is_no_news(alarms, i, quality))
+            continue;
+        alarms->seen[i].sampled = true;
         alarms->noticed[count++] =
-            (struct sample_event){ (int)i, bad ? NAN : reading->value, quality, now->taken_mono_ns, now->taken_utc_ns };
+            (struct sample_event){ (int)i, quality_is_bad(quality) ? NAN : reading->value, quality, now->taken_mono_ns, now->taken_utc_ns };
     }
     alarms_put(alarms, alarms->noticed, count);
 }
@@ -674,6 +692,7 @@ enum refusal_code alarms_act(struct alarms *alarms, int index, const struct alar
              &(struct alarm_change){ .event = act->event, .utc_ns = now.utc_ns, .value = NAN, .who = act->who, .reason = act->reason },
              now.mono_ns);
     if (outcome == ALARM_CHANGED) {
+        alarm->until_restored &= !shelves;
         alarms_watch(alarms, index);
         return REFUSAL_NONE;
     }
@@ -692,7 +711,6 @@ const struct alarm *alarms_at(const struct alarms *alarms, int index)
 
 int alarms_find(const struct alarms *alarms, int tag, enum alarm_kind kind)
 {
-        alarm->until_restored &= !shelves;
     for (int i = alarms->first_alarm[tag]; i < alarms->first_alarm[tag + 1]; i++)
         if (alarms->list[alarms->by_tag[i]].kind == kind)
             return alarms->by_tag[i];

@@ -16,6 +16,9 @@ struct feed {
 struct last_sample { /* newest sample of a tag */
     double value;
     bool sampled, bad;
+    bool recheck; /* true: a reload may have changed the tag's alarms, so they must be evaluated again with the present reading */
+    /* monotonic time since when the tag has been Bad and waiting for a first reading; 0: it is not waiting */
+    int64_t waits_since_ns;
 };
 
 struct gravest { /* most urgent alarm of a tag: its kind and its state */
@@ -41,7 +44,6 @@ struct alarms {
     int carried; /* number of BAD alarms that are suppressed because the LINK alarm of their device reports the failure */
     uint64_t number;
     int newest;
-    int64_t begun_ns; /* monotonic time of the first call of alarms_tick(); 0: none yet */
 };
 
 void alarms_touch(struct alarms *alarms, int index); /* gives the alarm the next change number, because its state has changed */

@@ -63,6 +63,12 @@ static bool same_limit(const struct alarm *a, const struct alarm *b)
     return !memcmp(&a->limit, &b->limit, sizeof(a->limit)) && !memcmp(&a->delays, &b->delays, sizeof(a->delays));
 }
 
+double alarm_value_in_unit(double value, const char *was, const char *is)
+{
+    struct unit_change change = { 0 };
+    return *was && *is && units_compare(was, is, &change) > UNITS_CONVERT ? NAN : unit_change_value(&change, value);
+}
+
 /* Copies the newest sample of each tag, and the states of devices, from the alarms of the old plant. */
 static void adopt_seen(struct alarms *alarms, const struct alarms *before)
 {
@@ -71,6 +77,8 @@ static void adopt_seen(struct alarms *alarms, const struct alarms *before)
         if (tag < 0)
             continue;
         alarms->seen[tag] = before->seen[i];
+        alarms->seen[tag].value =
+            alarm_value_in_unit(before->seen[i].value, plant_tag_unit(before->plant, (int)i), plant_tag_unit(alarms->plant, tag));
         devices_put(alarms->devices, tag, (enum device_status)before->devices->statuses[i], of < 0 ? 0 : before->devices->list[of].back_ns);
     }
 }
@@ -80,16 +88,11 @@ const char *alarm_unit(const struct alarms *alarms, const struct alarm *alarm)
     return plant_tag_unit(alarms->plant, alarm->tag);
 }
 
-double alarm_value_in_unit(double value, const char *was, const char *is)
-{
-    struct unit_change change = { 0 };
-    return *was && *is && units_compare(was, is, &change) > UNITS_CONVERT ? NAN : unit_change_value(&change, value);
-}
-
 void alarms_adopt(struct alarms *alarms, const struct alarms *before)
 {
-    alarms->begun_ns = before->begun_ns;
     adopt_seen(alarms, before);
+    for (size_t i = 0; i < alarms->plant->tag_count; i++)
+        alarms->seen[i].recheck = true;
     for (size_t i = 0; i < before->count; i++) {
         const struct alarm *from = &before->list[i];
         int index = alarms_find_named(alarms, from->name, from->kind);
@@ -97,12 +100,12 @@ void alarms_adopt(struct alarms *alarms, const struct alarms *before)
             continue;
         struct alarm *alarm = &alarms->list[index];
         alarm->held = from->held;
-        alarm->raised_mono_ns = from->raised_mono_ns;
-        memcpy(alarm->recent_ns, from->recent_ns, sizeof(alarm->recent_ns));
-        alarm->raised_count = from->raised_count;
         alarm->acknowledged_there = from->acknowledged_there;
         alarm->acknowledgement_bad = from->acknowledgement_bad;
         alarm->until_restored = from->until_restored;
+        alarm->raised_mono_ns = from->raised_mono_ns;
+        memcpy(alarm->recent_ns, from->recent_ns, sizeof(alarm->recent_ns));
+        alarm->raised_count = from->raised_count;
         if (same_limit(alarm, from))
             alarm->condition = from->condition;
         take(alarms, index, from);
@@ -149,7 +152,7 @@ bool alarms_mirror(struct alarms *alarms, const struct alarm *list, size_t count
 
 void alarms_lead(struct alarms *alarms, struct instant now)
 {
-    alarms->begun_ns = 0;
+    memset(alarms->seen, 0, alarms->plant->tag_count * sizeof(*alarms->seen));
     alarms->carried = 0;
     for (size_t i = 0; i < alarms->count; i++) {
         const struct alarm as_told = alarms->list[i];

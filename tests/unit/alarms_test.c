@@ -98,6 +98,12 @@ static void hear_all(struct stage *s, int second, double value, uint32_t quality
     alarms_put(s->alarms, heard, 5);
 }
 
+static void set_all(struct stage *s, uint32_t quality)
+{
+    for (int tag = 0; tag < 5; tag++)
+        s->snapshot->readings[tag].quality = quality;
+}
+
 static void tick(struct stage *s, int second)
 {
     s->snapshot->taken_mono_ns = second * S;
@@ -272,12 +278,6 @@ TEST(a_mirror_shows_what_the_other_system_says)
     assert_told(s, "5 TT.HH raise: normal > unacknowledged\n6 B1.BAD raise: normal > active\n");
     assert_true(alarms_at(s->alarms, alarms_find(s->alarms, 0, ALARM_HH))->held);
     assert_string_equal(word(s, 0, ALARM_HH), "unacknowledged");
-}
-
-TEST(what_was_kept_is_taken_up)
-{
-    struct stage *s = stage_create(ALARMS_LOCAL), *next;
-    hear(s, 1, 0, 95, QUALITY_GOOD);
     /* the acknowledgement bit turns Bad while it is 1. That acknowledgement does not apply to a new alarm */
     hear(s, 7, 4, 1, QUALITY_GOOD);
     hear(s, 8, 4, 0, QUALITY_BAD_CONFIGURATION);
@@ -302,6 +302,12 @@ TEST(what_was_kept_is_taken_up)
         hear(next, 15, 4, 0, QUALITY_BAD_CONFIGURATION);
         assert_string_equal(word(next, 0, ALARM_HH), "acknowledged");
     }
+}
+
+TEST(what_was_kept_is_taken_up)
+{
+    struct stage *s = stage_create(ALARMS_LOCAL), *next;
+    hear(s, 1, 0, 95, QUALITY_GOOD);
     act(s, 2, 0, ALARM_H, ALARM_SHELVE, 60);
     next = stage_create(ALARMS_LOCAL);
     for (int kind = ALARM_H; kind <= ALARM_HH; kind++)
@@ -324,12 +330,6 @@ TEST(what_was_kept_is_taken_up)
     assert_string_equal(word(next, 0, ALARM_HH), "active");
     /* display mode knows no shelving, so a restored shelved alarm becomes active again */
     assert_string_equal(word(next, 0, ALARM_H), "active");
-}
-
-static void set_unit(struct stage *s, const char *unit)
-{
-    mem_free(s->plant->tags[0].unit);
-    s->plant->tags[0].unit = mem_strdup(unit);
 }
 
 /* The clock is wrong at the start, as on a machine without a clock chip, and is corrected later. */
@@ -361,6 +361,12 @@ TEST(a_restored_shelf_ends_although_the_clock_was_wrong)
     assert_string_equal(word(next, 0, ALARM_H), "shelved");
 }
 
+static void set_unit(struct stage *s, const char *unit)
+{
+    mem_free(s->plant->tags[0].unit);
+    s->plant->tags[0].unit = mem_strdup(unit);
+}
+
 TEST(a_reload_keeps_what_stays)
 {
     struct stage *s = stage_create(ALARMS_LOCAL), *next;
@@ -377,6 +383,94 @@ TEST(a_reload_keeps_what_stays)
     memcpy(next->snapshot->readings, s->snapshot->readings, 5 * sizeof(struct reading));
     tick(next, 11);
     assert_told(next, "11 PT.H raise: normal > unacknowledged\n");
+}
+
+static struct plant_tag *tag_of(struct stage *s, int tag)
+{
+    return &s->plant->tags[tag];
+}
+
+/* Starts the alarms of `next` as after a reload: they take over the states of `s`, and the store has the same readings. */
+static void reload(struct stage *next, struct stage *s)
+{
+    start(next);
+    alarms_adopt(next->alarms, s->alarms);
+    memcpy(next->snapshot->readings, s->snapshot->readings, 5 * sizeof(struct reading));
+}
+
+/* After a reload, new and changed limits and bits apply to present readings, although no new samples arrive. */
+TEST(a_reload_checks_present_readings)
+{
+    struct stage *s = stage_create(ALARMS_LOCAL), *next = stage_with_plant(ALARMS_LOCAL);
+    hear(s, 1, 0, 85, QUALITY_GOOD);
+    hear(s, 1, 1, 3, QUALITY_GOOD);
+    hear(s, 1, 3, 1, QUALITY_GOOD);
+    assert_told(s, "1 TT.H raise: normal > unacknowledged\n");
+    tag_of(next, 0)->alarms.limits[LIMIT_H] = 95;  /* TT is at 85 and below its changed limit */
+    tag_of(next, 0)->alarms.limits[LIMIT_LL] = 86; /* and beyond this one, but TT is now also suppressed by B1 */
+    tag_of(next, 0)->alarms.suppressed_by = 3;
+    tag_of(next, 1)->alarms.limits[LIMIT_H] = 2; /* PT is at 3, beyond its changed limit. Its on delay of 2 s begins */
+    reload(next, s);
+    tick(next, 9);
+    assert_told(next, "9 TT.LL raise: normal > unacknowledged\n9 TT.H clear: unacknowledged > returned\n"
+                      "9 TT.LL suppress: unacknowledged > suppressed\n9 TT.L suppress: normal > suppressed\n"
+                      "9 TT.H suppress: returned > suppressed\n9 TT.HH suppress: normal > suppressed\n"
+                      "9 TT.BAD suppress: normal > suppressed\n");
+    tick(next, 12);
+    assert_told(next, "11 PT.H raise: normal > unacknowledged\n");
+    tick(next, 20);
+    assert_told(next, "");
+}
+
+/* Tags that are new after a reload, or whose readings the reload discarded, are Bad only after their stale time. */
+TEST(a_reload_gives_new_tags_time)
+{
+    struct stage *s = stage_with_plant(ALARMS_LOCAL), *next = stage_with_plant(ALARMS_LOCAL);
+    mem_free(s->plant->tags[1].name);
+    s->plant->tags[1].name = mem_strdup("PT-before");
+    start(s);
+    hear_all(s, 1, 3, QUALITY_GOOD);
+    tick(s, 1);
+    reload(next, s);
+    next->snapshot->readings[0].quality = next->snapshot->readings[1].quality = QUALITY_BAD_WAITING;
+    hear(next, 900, 2, 0, QUALITY_GOOD);
+    tick(next, 1000);
+    tick(next, 1004);
+    assert_string_equal(word(next, 0, ALARM_BAD), "normal");
+    tick(next, 1005);
+    tick(next, 1008);
+    assert_string_equal(word(next, 0, ALARM_BAD), "unacknowledged");
+    assert_string_equal(word(next, 1, ALARM_BAD), "unacknowledged");
+    next->log[0] = 0;
+    tick(next, 1009);
+    assert_told(next, "");
+}
+
+/* When a standby takes over, all readings are Bad, because the connection to the former leader is lost. No alarm is raised until its
+   own sources have had time to read the tags: the stale time, but at most 60 s. A derived tag repeats the quality of its inputs. */
+TEST(a_takeover_gives_sources_time)
+{
+    static const double stale_s[] = { 5, 3600, PLANT_NEVER_STALE_S };
+    for (int i = 0; i < 3; i++) {
+        struct stage *s = stage_with_plant(ALARMS_LOCAL);
+        int wait_s = i == 0 ? 5 : 60, on_s = i == 2 ? 10 : 0;
+        for (int tag = 0; tag < 5; tag++)
+            tag_of(s, tag)->validity.stale_s = stale_s[i];
+        tag_of(s, 4)->source = -1;
+        tag_of(s, 4)->alarms.limits[LIMIT_H] = 5;
+        start(s);
+        assert_true(alarms_mirror(s->alarms, NULL, 0, true));
+        set_all(s, QUALITY_BAD_COMMUNICATION_ERROR);
+        alarms_lead(s->alarms, at(100));
+        hear(s, 100, 4, 0, QUALITY_BAD_COMMUNICATION_ERROR);
+        tick(s, 100);
+        tick(s, 100 + wait_s - 1);
+        assert_told(s, "");
+        tick(s, 100 + wait_s);
+        tick(s, 100 + wait_s + on_s);
+        assert_non_null(strstr(s->log, test_printf("%d a.LINK raise: normal > unacknowledged\n", 100 + wait_s + on_s)));
+        assert_non_null(strstr(s->log, test_printf("%d B2.BAD raise: normal > unacknowledged\n", 100 + wait_s)));
+    }
 }
 
 TEST(changes_come_newest_first)
@@ -467,12 +561,6 @@ TEST(no_sequence_tells_a_contradiction)
 }
 
 /* --- devices ---------------------------------------------------------------------------------------------------------------- */
-
-static void set_all(struct stage *s, uint32_t quality)
-{
-    for (int tag = 0; tag < 5; tag++)
-        s->snapshot->readings[tag].quality = quality;
-}
 
 static enum refusal_code act_on_link(struct stage *s, int second, const char *name, enum alarm_event event)
 {
