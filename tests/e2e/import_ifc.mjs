@@ -77,6 +77,9 @@ function importAll(folder, schema, elements, found) {
     }
 }
 
+// By default each kind is tried in one schema only: in IFC4 if that has it, otherwise in the only schema that has it.
+const isTried = (schema, schemas) => sweep(true, schema === 'IFC4' || !schemas.includes('IFC4'));
+
 // Round shapes are tessellated with at least 24 corners per circle, so the volume is up to 2.4 % below the exact one.
 test('every kind of IFC shape has its geometric volume and size, and the area and size of a second reader', { skip }, () => inFolder(
     async (folder) => {
@@ -85,7 +88,7 @@ test('every kind of IFC shape has its geometric volume and size, and the area an
     if (!second)
         console.log('# skipped: no second reader: npm ci in tests/e2e brings @ifc-lite/wasm');
     for (const schema of ['IFC2X3', 'IFC4', 'IFC4X3_ADD2']) {
-        const kinds = KINDS.filter(([, schemas]) => schemas.includes(schema));
+        const kinds = KINDS.filter(([, schemas]) => schemas.includes(schema) && isTried(schema, schemas));
         importAll(folder, schema, kinds.map(([, , lines, , type]) => ({ lines, type })), (i, found, said) => {
             const [name, , lines, { volume, size }, type] = kinds[i];
             console.log = console.warn = () => {}; // silences the second reader
@@ -104,8 +107,8 @@ test('every kind of IFC shape has its geometric volume and size, and the area an
         });
     }
     console.log(`# ${right} of ${right + wrong.length} cases of ${KINDS.length} kinds are right, ${compared} compared with a second one`);
-    assert.equal(right + wrong.length, KINDS.flatMap(([, schemas]) => schemas).length);
-    assert.ok(!second || compared > 40, `${compared} cases compared`);
+    assert.equal(right + wrong.length, sweep(KINDS.flatMap(([, schemas]) => schemas), KINDS).length);
+    assert.ok(!second || compared > sweep(40, 20), `${compared} cases compared`);
     assert.ok(!hasOcct || wrong.length === 0, wrong.join('\n'));
 }));
 
