@@ -15,10 +15,10 @@ const options = { skip: why ?? false, timeout: 200000 };
 const SCREENS = {
     phone: PHONE,
     'phone across': { ...PHONE, viewport: { width: 844, height: 390 } },
-    tablet: TABLET,
-    'low desk': { viewport: { width: 1280, height: 420 } },
     'far wall': { viewport: { width: 1920, height: 1080 }, query: '?wall=85,8' },
     ...sweep({
+        tablet: TABLET,
+        'low desk': { viewport: { width: 1280, height: 420 } },
         'desk at 200 %': { viewport: { width: 640, height: 400 }, deviceScaleFactor: 2 },
         desk: { viewport: { width: 1280, height: 800 } },
         wall: { viewport: { width: 1920, height: 1080 }, query: '?wall=55,4' },
