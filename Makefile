@@ -290,7 +290,7 @@ $(foreach t,rvm rvm_fuzz outline_fuzz,$(out)/tests/unit/$(t)_test): $(out)/lib/i
 $(out)/tests/unit/revision_test: $(out)/lib/import.a $(out)/lib/match.a
 $(out)/tests/unit/rvm_test $(out)/tests/unit/rvm_fuzz_test $(out)/tests/unit/revision_test: pkg_libs += -lGLU
 $(out)/tests/unit/revision_test: pkg_libs += -lminizip -lexpat
-match_tests := $(foreach t,match tag_export tag_list_fuzz,$(out)/tests/unit/$(t)_test)
+match_tests := $(foreach t,match tag_export tag_rows tag_list_fuzz,$(out)/tests/unit/$(t)_test)
 $(match_tests): $(out)/lib/match.a
 $(match_tests): pkg_libs += -lminizip -lexpat
 # Writes STEP and IGES files for the tests of the importer.

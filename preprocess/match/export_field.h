@@ -3,12 +3,13 @@
 #ifndef PREPROCESS_MATCH_EXPORT_FIELD_H
 #define PREPROCESS_MATCH_EXPORT_FIELD_H
 
-enum export_field { /* all fields of a tag are text; numbers use a decimal point */
+enum export_field { /* all fields of a tag are text; tag_export_read_numbers() gives numbers a decimal point */
                     EXPORT_NAME,
                     EXPORT_ADDRESS,
                     EXPORT_TYPE,
                     EXPORT_SCAN,
                     EXPORT_SCALING,
+                    EXPORT_NEGATE, /* "1": the sign of the scaled value is reversed, or the bit is inverted; "0": not */
                     EXPORT_RAW_LOW,
                     EXPORT_RAW_HIGH,
                     EXPORT_SCALED_LOW,
@@ -21,6 +22,7 @@ enum export_field { /* all fields of a tag are text; numbers use a decimal point
                     EXPORT_L,
                     EXPORT_H,
                     EXPORT_HH,
+                    EXPORT_SPAN, /* length of the range, if the list states the range's low end and length */
                     EXPORT_FIELDS
 };
 

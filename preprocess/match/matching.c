@@ -449,6 +449,30 @@ static bool write_files(struct matching_run *run, const char *matches_path)
     return good;
 }
 
+static void say_rows(const struct tag_rows *rows, FILE *out)
+{
+    const struct {
+        const struct tag_names *names;
+        const char *one, *many;
+    } lines[] = {
+        { &rows->types, "tag is not in the tag list, because Plantcast does not know the data type or it does not fit the address",
+          "tags are not in the tag list, because Plantcast does not know the data type or it does not fit the address" },
+        { &rows->scalings, "tag has no scaling in the tag list and would show raw values, because the scaling cannot be used",
+          "tags have no scaling in the tag list and would show raw values, because the scaling cannot be used" },
+        { &rows->ranges, "tag has no range in the tag list, because only one end of the range is a number",
+          "tags have no range in the tag list, because only one end of the range is a number" },
+        { &rows->limits, "tag has no alarm limits in the tag list, because its limits do not rise from LL to HH",
+          "tags have no alarm limits in the tag list, because their limits do not rise from LL to HH" },
+        { &rows->differing, "tag has another address, type, scaling, unit or limit in this export; the tag list keeps its own",
+          "tags have another address, type, scaling, unit or limit in this export; the tag list keeps its own" },
+    };
+    struct text text = { 0 };
+    for (size_t i = 0; i < sizeof(lines) / sizeof(*lines); i++)
+        tag_names_say(lines[i].names, lines[i].one, lines[i].many, &text);
+    fputs(text.at ? text.at : "", out);
+    text_finish(&text);
+}
+
 static void print_result(const struct matching_run *run, FILE *out)
 {
     size_t counts[3] = { 0 };
@@ -459,11 +483,13 @@ static void print_result(const struct matching_run *run, FILE *out)
     fprintf(out, run->by_hand > 0 ? "; %zu of them by hand\n" : "\n", run->by_hand);
     fprintf(out, "positions: %zu tags are at a node of their own, %zu tags at an assumed position of their equipment\n", run->own_nodes,
             run->assumed);
-    if (run->left_out > 0)
+    size_t left_out = run->left_out - run->rows.types.count;
+    if (left_out > 0)
         fprintf(out,
-                run->left_out == 1 ? "%zu tag is not in the tag list, because the tag is text or has no address for %s\n"
-                                   : "%zu tags are not in the tag list, because these tags are text or have no address for %s\n",
-                run->left_out, run->source.id ? run->source.id : "a source");
+                left_out == 1 ? "%zu tag is not in the tag list, because the tag is text or has no address for %s\n"
+                              : "%zu tags are not in the tag list, because these tags are text or have no address for %s\n",
+                left_out, run->source.id ? run->source.id : "a source");
+    say_rows(&run->rows, out);
     if (run->left > 0)
         fprintf(out, "%zu tags are no longer in the exported list; decisions about these tags are kept: %s%s\n", run->left,
                 run->left_names.at, run->left > LEFT_NAMED ? ", ..." : "");

@@ -185,10 +185,14 @@ static void take_range(struct quantity *quantity, const struct export_tag *tag)
     if (*unit)
         units_compare(unit, quantity->unit, &change);
     if (number_parse(tag->fields[EXPORT_SCALED_LOW], &low) != NUMBER_GOOD ||
-        number_parse(tag->fields[EXPORT_SCALED_HIGH], &high) != NUMBER_GOOD || low >= high)
+        number_parse(tag->fields[EXPORT_SCALED_HIGH], &high) != NUMBER_GOOD || low == high)
         return;
-    quantity->low = fmin(quantity->low, unit_change_value(&change, low));
-    quantity->high = fmax(quantity->high, unit_change_value(&change, high));
+    if (!strcmp(tag->fields[EXPORT_NEGATE], "1")) {
+        low = -low;
+        high = -high;
+    }
+    quantity->low = fmin(quantity->low, unit_change_value(&change, fmin(low, high)));
+    quantity->high = fmax(quantity->high, unit_change_value(&change, fmax(low, high)));
 }
 
 /* Returns a unit as spelt in a colour scale's legend, such as "°C" for "degC". */

@@ -9,7 +9,6 @@
 
 #include "base/mem.h"
 #include "base/text/text.h"
-#include "plant/parse/number.h"
 #include "preprocess/match/table.h"
 #include "preprocess/match/tag_header.h"
 
@@ -38,43 +37,14 @@ static const char *format_of(const struct table_row *row)
 
 /* --- rows ------------------------------------------------------------------------------------------------------------------- */
 
-static bool is_number_field(enum export_field field)
+/* Removes the limits that the control system has switched off. InTouch exports a switched-off limit as a number, usually 0. */
+static void drop_limits(struct export_tag *tag, const struct tag_header *header, const struct table_row *row)
 {
-    return (field >= EXPORT_RAW_LOW && field <= EXPORT_SCALED_HIGH) || field >= EXPORT_LL;
-}
-
-/* Sets a numeric field of a tag. Accepts "1.234,5" and "12,5" too; ignores text that is not a number. */
-static void set_number(struct export_tag *tag, enum export_field field, const char *text)
-{
-    char copy[64];
-    double number;
-    size_t length = 0;
-    const char *comma = strrchr(text, ','), *dot = strrchr(text, '.');
-    bool decimal_comma = comma && (!dot || dot < comma) && strchr(text, ',') == comma;
-    for (; *text && length < sizeof(copy) - 1; text++)
-        if (*text == ',' && decimal_comma)
-            copy[length++] = '.';
-        else if (*text != ',' && *text != ' ' && !(*text == '.' && decimal_comma))
-            copy[length++] = *text;
-    copy[length] = 0;
-    if (number_parse(copy, &number) == NUMBER_GOOD)
-        export_tag_set(tag, field, copy);
-}
-
-/* Sets a tag's scaled limits from a PI range (AVEVA's historian), which is exported as its low end and its length. */
-static void set_span(struct export_tag *tag, const char *text)
-{
-    struct export_tag of_text = { 0 };
-    double low, span;
-    set_number(&of_text, EXPORT_SCALED_HIGH, text);
-    if (of_text.fields[EXPORT_SCALED_HIGH] && tag->fields[EXPORT_SCALED_LOW] &&
-        number_parse(of_text.fields[EXPORT_SCALED_HIGH], &span) == NUMBER_GOOD &&
-        number_parse(tag->fields[EXPORT_SCALED_LOW], &low) == NUMBER_GOOD) {
-        char high[40];
-        snprintf(high, sizeof(high), "%.12g", low + span);
-        export_tag_set(tag, EXPORT_SCALED_HIGH, high);
-    }
-    mem_free(of_text.fields[EXPORT_SCALED_HIGH]);
+    for (int i = 0; i < 4; i++)
+        if (!strcasecmp(table_cell(row, header->limit_states[i]), "Off")) {
+            mem_free(tag->fields[EXPORT_LL + i]);
+            tag->fields[EXPORT_LL + i] = NULL;
+        }
 }
 
 static void read_row(struct tag_export *list, const struct tag_header *header, const struct table_row *row)
@@ -88,14 +58,9 @@ static void read_row(struct tag_export *list, const struct tag_header *header, c
         return;
     }
     struct export_tag *tag = tag_export_add(list, row->line);
-    for (int f = 0; f < EXPORT_FIELDS; f++) {
-        const char *text = table_cell(row, header->columns[f]);
-        if (is_number_field((enum export_field)f))
-            set_number(tag, (enum export_field)f, text);
-        else
-            export_tag_set(tag, (enum export_field)f, text);
-    }
-    set_span(tag, table_cell(row, header->span));
+    for (int f = 0; f < EXPORT_FIELDS; f++)
+        export_tag_set(tag, (enum export_field)f, table_cell(row, header->columns[f]));
+    drop_limits(tag, header, row);
     if (header->data_type)
         export_tag_set(tag, EXPORT_TYPE, header->data_type);
 }
@@ -399,10 +364,12 @@ bool tag_export_read(struct tag_export *list, const char *path, const char *enco
                  length > 0 ? list->remarks.at : "");
         good = false;
     }
-    if (good)
+    if (good) {
+        tag_export_read_numbers(list);
         tag_export_join(list);
-    else
+    } else {
         tag_export_finish(list);
+    }
     return good;
 }
 

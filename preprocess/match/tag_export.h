@@ -44,6 +44,9 @@ struct export_tag *tag_export_add(struct tag_export *list, int line);
 void export_tag_set(struct export_tag *tag, enum export_field field, const char *text);
 /* Reads an export of tags from Ignition (JSON). Returns false with the reason in why. */
 bool tag_export_read_json(struct tag_export *list, const char *text, size_t length, char *why, size_t why_bytes);
+/* Replaces the texts of ranges and limits by numbers with a decimal point. Adds remarks about texts that are not numbers, and about
+ * numbers in which a comma or dot may separate thousands. */
+void tag_export_read_numbers(struct tag_export *list);
 /* Merges the list's duplicate tags, so that names are unique. */
 void tag_export_join(struct tag_export *list);
 

@@ -11,38 +11,22 @@
 #include "base/mem.h"
 #include "preprocess/match/tag_export.h"
 #include "preprocess/match/table.h"
+#include "preprocess/match/tag_names.h"
 
-enum { MAX_DEPTH = 64, MAX_LAYERS = 32, NAMED = 5, MAX_REFERENCES = 1000 };
+enum { MAX_DEPTH = 64, MAX_LAYERS = 32, MAX_REFERENCES = 1000 };
 
 static const struct property {
     const char *name;
     enum export_field field;
 } properties[] = {
-    { "opcItemPath", EXPORT_ADDRESS },
-    { "dataType", EXPORT_TYPE },
-    { "scaleMode", EXPORT_SCALING },
-    { "rawLow", EXPORT_RAW_LOW },
-    { "rawHigh", EXPORT_RAW_HIGH },
-    { "scaledLow", EXPORT_SCALED_LOW },
-    { "scaledHigh", EXPORT_SCALED_HIGH },
-    { "engLow", EXPORT_SCALED_LOW },
-    { "engHigh", EXPORT_SCALED_HIGH },
-    { "engUnit", EXPORT_UNIT },
-    { "documentation", EXPORT_DESCRIPTION },
-    { "tooltip", EXPORT_DESCRIPTION },
-    { "opcServer", EXPORT_DEVICE },
-};
-
-/* A problem that concerns many tags: their number, and the paths of the first ones. */
-struct complaint {
-    size_t count;
-    struct text paths;
+    { "opcItemPath", EXPORT_ADDRESS },       { "dataType", EXPORT_TYPE },       { "engUnit", EXPORT_UNIT },
+    { "documentation", EXPORT_DESCRIPTION }, { "tooltip", EXPORT_DESCRIPTION }, { "opcServer", EXPORT_DEVICE },
 };
 
 struct tag_json_reader {
     struct tag_export *list;
     json_t *types; /* definitions of user-defined types (UDT), by path within the export's folder of types; borrowed */
-    struct complaint unknown, circular, unresolved, without;
+    struct tag_names unknown, circular, unresolved, without;
     bool too_deep, too_many;
     /* number of references to parameters resolved for the current property; limited, because parameters may refer to each other in a
      * cycle */
@@ -91,11 +75,11 @@ static const char *string_of(const struct layered_node *node, const char *key)
     return text ? text : "";
 }
 
-static void complain(struct complaint *complaint, const char *folder, const char *name, const char *detail)
+static void complain(struct tag_names *names, const char *folder, const char *name, const char *detail)
 {
-    if (complaint->count++ < NAMED)
-        text_add(&complaint->paths, "%s%s%s%.80s%s%.80s%s", complaint->count > 1 ? ", " : "", folder, *folder ? "/" : "", name,
-                 *detail ? " (" : "", detail, *detail ? ")" : "");
+    char *path = mem_printf("%s%s%.80s", folder, *folder ? "/" : "", name);
+    tag_names_add(names, path, "%.80s", detail);
+    mem_free(path);
 }
 
 /* --- types ------------------------------------------------------------------------------------------------------------------ */
@@ -382,6 +366,31 @@ static void set_field(const struct scope *scope, struct export_tag *tag, enum ex
     text_finish(&out);
 }
 
+/* Sets a number from a property. Exports omit properties that have their default value, `initial`. */
+static void set_range(const struct scope *scope, struct export_tag *tag, enum export_field field, json_t *value, const char *initial)
+{
+    if (!value || json_is_null(value))
+        export_tag_set(tag, field, initial);
+    else
+        set_field(scope, tag, field, value);
+}
+
+/* Sets the scaling of a tag, or the range of its engineering unit if Ignition does not scale it. */
+static void set_scaling(const struct scope *scope, struct export_tag *tag, const struct layered_node *node)
+{
+    static const char *const scaled[][2] = { { "rawLow", "0" }, { "rawHigh", "10" }, { "scaledLow", "0" }, { "scaledHigh", "10" } };
+    json_t *mode = property_of(node, "scaleMode"), *low = property_of(node, "engLow"), *high = property_of(node, "engHigh");
+    set_range(scope, tag, EXPORT_SCALING, mode, "None");
+    const char *scaling = tag->fields[EXPORT_SCALING];
+    if (scaling && (!strcasecmp(scaling, "Linear") || !strcasecmp(scaling, "SquareRoot"))) {
+        for (int i = 0; i < 4; i++)
+            set_range(scope, tag, EXPORT_RAW_LOW + i, property_of(node, scaled[i][0]), scaled[i][1]);
+    } else if (low || high) {
+        set_range(scope, tag, EXPORT_SCALED_LOW, low, "0");
+        set_range(scope, tag, EXPORT_SCALED_HIGH, high, "100");
+    }
+}
+
 /* Adds a tag of the export to the list. A member of a UDT instance gets its whole path as its name, because its own name is the
  * same in all instances. */
 static void add_tag(const struct scope *scope, const struct layered_node *node)
@@ -398,12 +407,7 @@ static void add_tag(const struct scope *scope, const struct layered_node *node)
     mem_free(name);
     for (size_t i = 0; i < sizeof(properties) / sizeof(*properties); i++)
         set_field(scope, tag, properties[i].field, property_of(node, properties[i].name));
-    /* takes Ignition's default values for the scaled limits (lowest and highest measurable values), 0 and 100, because exports
-       omit default values */
-    if (tag->fields[EXPORT_SCALED_HIGH])
-        export_tag_set(tag, EXPORT_SCALED_LOW, "0");
-    if (tag->fields[EXPORT_SCALED_LOW])
-        export_tag_set(tag, EXPORT_SCALED_HIGH, "100");
+    set_scaling(scope, tag, node);
     export_tag_set(tag, EXPORT_AREA, scope->folder);
     if (!tag->fields[EXPORT_NAME]) /* a tag whose name is blank in the export gets the name "unnamed" */
         export_tag_set(tag, EXPORT_NAME, "unnamed");
@@ -477,11 +481,10 @@ static void add_node(struct tag_json_reader *reader, struct layered_node *node, 
     mem_free(below);
 }
 
-static void say(struct tag_export *list, struct complaint *complaint, const char *what)
+static void say(struct tag_export *list, struct tag_names *names, const char *what)
 {
-    if (complaint->count > 0)
-        text_add(&list->remarks, "%zu %s: %s%s\n", complaint->count, what, complaint->paths.at, complaint->count > NAMED ? ", ..." : "");
-    text_finish(&complaint->paths);
+    tag_names_say(names, what, what, &list->remarks);
+    tag_names_finish(names);
 }
 
 bool tag_export_read_json(struct tag_export *list, const char *text, size_t length, char *why, size_t why_bytes)

@@ -44,6 +44,8 @@ static const struct {
       " scanrate scanintervall abtastrate " },
     { EXPORT_SCALING,
       " scaling scalemode conversion skalierung " },
+    { EXPORT_NEGATE,
+      " negatevalue negate " },
     { EXPORT_RAW_LOW,
       " rawlow minraw rawmin rohmin rohwertmin raw0 " },
     { EXPORT_RAW_HIGH,
@@ -100,6 +102,8 @@ static const struct {
       " l lo loalarmvalue lolimit lolim pvlotp 低报 低限 下限警報 lwert " },
     { EXPORT_H,
       " h hi hialarmvalue hilimit hilim pvhitp 高报 高限 上限警報 hwert " },
+    { EXPORT_SPAN,
+      " span " },
     { EXPORT_HH,
       " hh hihi hihialarmvalue hihilimit hihilim pvhhtp 高高报 高高限 上上限 상상한 hhwert " },
 };
@@ -150,11 +154,13 @@ static bool take_key(const char *key, void *data)
 {
     struct header_reading *reading = data;
     struct tag_header *header = reading->header;
+    static const char *const states[] = { "loloalarmstate", "loalarmstate", "hialarmstate", "hihialarmstate" };
     bool known = true;
+    for (int i = 0; i < 4; i++)
+        if (!strcmp(key, states[i]))
+            header->limit_states[i] = reading->column;
     if (!strcmp(key, "tagtype"))
         header->tag_type = reading->column;
-    else if (!strcmp(key, "span"))
-        header->span = reading->column;
     else if (!strcmp(key, "specifier"))
         header->specifier = reading->column;
     else
@@ -177,7 +183,7 @@ int tag_header_read(const struct table_row *row, struct tag_header *header)
 {
     struct header_reading reading = { .header = header };
     int known = 0;
-    *header = (struct tag_header){ .tag_type = -1, .span = -1, .kind = -1, .specifier = -1 };
+    *header = (struct tag_header){ .tag_type = -1, .limit_states = { -1, -1, -1, -1 }, .kind = -1, .specifier = -1 };
     for (int f = 0; f < EXPORT_FIELDS; f++)
         header->columns[f] = -1;
     for (size_t c = 0; c < row->count; c++) {

@@ -8,9 +8,7 @@
 struct tag_header {
     int columns[EXPORT_FIELDS]; /* by field of a tag (export_field.h): index of its column; -1: none */
     int tag_type;               /* index of the column with Ignition's tag type, which marks folders; -1: none */
-    /* index of the column with the length of the tag's value range, for files that give only the range's low end and its
-       length; -1: none */
-    int span;
+    int limit_states[4];        /* indices of the columns in which InTouch states whether LL, L, H and HH are on; -1: none */
     /* column indices in Studio 5000 exports. kind: kind of the row; specifier: element of a tag described by a comment row; -1: none */
     int kind, specifier;
     const char *data_type; /* data type of all tags in the rows after the header; NULL: unknown */

@@ -10,8 +10,11 @@
 
 #include "base/math/search.h"
 #include "base/mem.h"
-#include "plant/sources/address.h"
 #include "base/text/charset.h"
+#include "plant/parse/number.h"
+#include "plant/sources/address.h"
+#include "plant/tags/units.h"
+#include "preprocess/match/fold.h"
 #include "preprocess/match/table.h"
 
 enum column {
@@ -23,6 +26,7 @@ enum column {
     RAW_HIGH,
     SCALED_LOW,
     SCALED_HIGH,
+    NEGATE,
     UNITS,
     DESCRIPTION,
     SOURCE,
@@ -39,10 +43,11 @@ enum column {
     HH,
     COLUMNS
 };
-static const char *const names[COLUMNS] = { "Tag Name",   "Address",     "Data Type", "Scaling",     "Raw Low", "Raw High",
-                                            "Scaled Low", "Scaled High", "Eng Units", "Description", "Source",  "Group",
-                                            "Asset",      "Place",       "Node",      "X",           "Y",       "Z",
-                                            "LL",         "L",           "H",         "HH" };
+static const char *const names[COLUMNS] = {
+    "Tag Name",  "Address",     "Data Type", "Scaling", "Raw Low", "Raw High", "Scaled Low", "Scaled High", "Negate Value",
+    "Eng Units", "Description", "Source",    "Group",   "Asset",   "Place",    "Node",       "X",           "Y",
+    "Z",         "LL",          "L",         "H",       "HH"
+};
 static const size_t max_bytes = (size_t)64 << 20;
 
 /* --- reading ---------------------------------------------------------------------------------------------------------------- */
@@ -81,6 +86,13 @@ static int by_name(const void *pa, const void *pb, void *rows_ptr)
     return strcmp(table_cell(&rows->at[*(const int *)pa], column), table_cell(&rows->at[*(const int *)pb], column));
 }
 
+static void add_header(struct tag_rows *rows)
+{
+    struct table_row *header = add_row(rows);
+    for (int i = 0; i < COLUMNS; i++)
+        set_cell(header, i, names[i]);
+}
+
 static bool read_file(struct tag_rows *rows, const char *path, char why[MATCH_WHY_BYTES])
 {
     struct charset_text text;
@@ -115,9 +127,7 @@ bool tag_rows_read(struct tag_rows *rows, const char *path, char why[MATCH_WHY_B
         return false;
     if (rows->count == 0) {
         rows->separator = ',';
-        struct table_row *header = add_row(rows);
-        for (int i = 0; i < COLUMNS; i++)
-            set_cell(header, i, names[i]);
+        add_header(rows);
     }
     rows->known = rows->count;
     if (find_column(rows, NAME) < 0) {
@@ -137,6 +147,9 @@ void tag_rows_finish(struct tag_rows *rows)
         table_row_finish(&rows->at[i]);
     mem_free(rows->at);
     mem_free(rows->by_name);
+    struct tag_names *const lists[] = { &rows->types, &rows->scalings, &rows->ranges, &rows->limits, &rows->differing };
+    for (size_t i = 0; i < sizeof(lists) / sizeof(*lists); i++)
+        tag_names_finish(lists[i]);
     *rows = (struct tag_rows){ 0 };
 }
 
@@ -162,35 +175,62 @@ static void put(struct tag_rows *rows, struct table_row *row, enum column column
     set_cell(row, at, text);
 }
 
-static bool is_text(const char *type)
+/* Returns Kepware's name for a data type, converting names used by Ignition, IEC 61131-3, PI and WinCC: "" if the export states
+ * no type, "String" for all kinds of text, NULL if the name is unknown. */
+static const char *type_of(const char *type)
 {
-    return !strcasecmp(type, "String") || !strcasecmp(type, "Text") || !strcasecmp(type, "Char") || !strcasecmp(type, "DateTime");
+    static const struct {
+        const char *name, *words; /* words: other names of the type after fold_key(), each with a blank before and after */
+    } types[] = {
+        { "", " default " },
+        { "String", " text char wchar wstring datetime texttag8bitcharacterset texttag16bitcharacterset " },
+        { "Boolean", " bool bit discrete binarytag binarevariable " },
+        { "Short", " int int1 int2 int16 i16 signed16bitvalue vorzeichenbehafteter16bitwert " },
+        { "Word", " uint ushort u16 unsigned16bitvalue vorzeichenloser16bitwert " },
+        { "Long", " dint integer int4 int32 i32 signed32bitvalue vorzeichenbehafteter32bitwert " },
+        { "DWord", " udint u32 unsigned32bitvalue vorzeichenloser32bitwert " },
+        { "LLong", " lint int8 i64 " },
+        { "QWord", " ulint lword u64 " },
+        { "Float", " real single float32 float4 real4 real32 f32 32bitfloat floatingpointnumber32bitieee754 gleitkommazahl32bitieee754 " },
+        { "Double", " lreal float64 float8 real8 real64 f64 64bitfloat floatingpointnumber64bitieee754 gleitkommazahl64bitieee754 " },
+    };
+    enum data_type parsed;
+    const char *found = NULL;
+    char *key = fold_key(type), *word = mem_printf(" %s ", key);
+    for (size_t i = 0; i < sizeof(types) / sizeof(*types) && !found; i++)
+        if (strstr(types[i].words, word))
+            found = types[i].name;
+    if (!found && !strncmp(key, "string", 6)) /* STRING[80], StringArray */
+        found = "String";
+    if (!found && (!*type || data_type_parse(type, &parsed)))
+        found = type;
+    mem_free(word);
+    mem_free(key);
+    return found;
 }
 
-/* Returns whether an exported tag is omitted from the tag list: it is not numeric, or its address is invalid for its source. */
-static bool is_left_out(const struct export_tag *tag, const struct tag_source *source)
+/* Returns whether an exported tag is omitted from the tag list: it is not numeric, or its address or data type is invalid for its
+ * source. */
+static bool is_left_out(struct tag_rows *rows, const struct export_tag *tag, const struct tag_source *source)
 {
     struct modbus_address address;
     char why[200];
-    return is_text(tag->fields[EXPORT_TYPE]) ||
-           (source->modbus && !address_parse(tag->fields[EXPORT_ADDRESS], source->address_base, &address, why));
-}
-
-/* Returns Kepware's name for a data type, converting names used by Ignition, IEC 61131-3 and PI. An unknown name gives "", so
- * that the type follows from the address. */
-static const char *type_of(const char *type)
-{
-    static const char *const others[][2] = {
-        { "Float4", "Float" },  { "Float8", "Double" },  { "Int1", "Short" },  { "Int2", "Short" },   { "Int4", "Long" },
-        { "Int8", "LLong" },    { "Integer", "Long" },   { "Real", "Float" },  { "Bool", "Boolean" }, { "Discrete", "Boolean" },
-        { "Int", "Short" },     { "DInt", "Long" },      { "UInt", "Word" },   { "UDInt", "DWord" },  { "LReal", "Double" },
-        { "Float32", "Float" }, { "Float64", "Double" }, { "Int16", "Short" }, { "Int32", "Long" }
-    };
-    enum data_type parsed;
-    for (size_t i = 0; i < sizeof(others) / sizeof(*others); i++)
-        if (!strcasecmp(type, others[i][0]))
-            return others[i][1];
-    return data_type_parse(type, &parsed) ? type : "";
+    const char *text = tag->fields[EXPORT_ADDRESS], *stated = tag->fields[EXPORT_TYPE], *type = type_of(stated);
+    if (type && !strcmp(type, "String"))
+        return true;
+    if (!source->modbus)
+        return false;
+    if (!address_parse(text, source->address_base, &address, why))
+        return true;
+    bool whole = address.table != TABLE_COIL && address.table != TABLE_DISCRETE && address.bit < 0,
+         bit = type && !strcasecmp(type, "Boolean");
+    if (type && !(whole && bit))
+        return false;
+    if (type)
+        tag_names_add(&rows->types, tag->fields[EXPORT_NAME], "%.40s at %.40s, not at a bit such as %.40s.0", stated, text, text);
+    else
+        tag_names_add(&rows->types, tag->fields[EXPORT_NAME], "%.60s", stated);
+    return true;
 }
 
 static void put_address(struct tag_rows *rows, struct table_row *row, const struct tag_row_input *input)
@@ -202,39 +242,135 @@ static void put_address(struct tag_rows *rows, struct table_row *row, const stru
         return;
     bool one_bit = input->source->modbus && address_parse(text, input->source->address_base, &address, why) &&
                    (address.table == TABLE_COIL || address.table == TABLE_DISCRETE || address.bit >= 0);
-    bool bit = !strcasecmp(type, "Boolean");
     put(rows, row, ADDRESS, text);
-    put(rows, row, TYPE, one_bit == bit ? type : "");
+    put(rows, row, TYPE, type && (!one_bit || !strcasecmp(type, "Boolean")) ? type : "");
     put(rows, row, SOURCE, input->source->id);
+}
+
+/* The scale of an exported tag: raw value and scaled value at its two ends. */
+struct tag_range {
+    bool stated;
+    double low, high;
+    char texts[2][64];
+};
+
+static void read_ends(const struct export_tag *tag, enum export_field field, struct tag_range *range)
+{
+    const char *const *cells = (const char *const *)&tag->fields[field];
+    for (int i = 0; i < 2; i++)
+        snprintf(range->texts[i], sizeof(range->texts[i]), "%s", cells[i]);
+    range->stated = number_parse(cells[0], &range->low) == NUMBER_GOOD && number_parse(cells[1], &range->high) == NUMBER_GOOD;
+}
+
+static void swap_ends(struct tag_range *range)
+{
+    char text[sizeof(range->texts[0])];
+    double low = range->low;
+    range->low = range->high;
+    range->high = low;
+    memcpy(text, range->texts[0], sizeof(text));
+    memcpy(range->texts[0], range->texts[1], sizeof(text));
+    memcpy(range->texts[1], text, sizeof(text));
+}
+
+static void negate_ends(struct tag_range *range)
+{
+    double *const ends[] = { &range->low, &range->high };
+    for (int i = 0; i < 2; i++) {
+        *ends[i] = *ends[i] == 0 ? 0 : -*ends[i];
+        char *text = range->texts[i], copy[sizeof(range->texts[0])];
+        snprintf(copy, sizeof(copy), "%s%s", *ends[i] < 0 ? "-" : "", text + (*text == '-' || *text == '+'));
+        memcpy(text, copy, sizeof(copy));
+    }
+}
+
+/* Makes the ends of both ranges rise, without changing the values of a tag. A scale that falls becomes one that rises to the
+ * negative values, and *negate changes. Returns NULL, or why this is impossible. */
+static const char *straighten(bool linear, struct tag_range *raw, struct tag_range *scaled, bool *negate)
+{
+    if (raw->low == raw->high)
+        return "Raw Low equals Raw High";
+    if (scaled->low == scaled->high)
+        return "Scaled Low equals Scaled High";
+    if (raw->low > raw->high) {
+        if (!linear)
+            return "Raw Low is above Raw High";
+        swap_ends(raw);
+        swap_ends(scaled);
+    }
+    if (scaled->low > scaled->high) {
+        negate_ends(scaled);
+        *negate = !*negate;
+    }
+    return NULL;
+}
+
+/* Finds what a tag's row states about scaling: "Linear", "Square Root" or "". *why: why the tag's scaling is left out; "": it is not. */
+static const char *find_scaling(const struct export_tag *tag, struct tag_range *raw, struct tag_range *scaled, bool *negate, char why[120])
+{
+    const char *text = tag->fields[EXPORT_SCALING], *type = type_of(tag->fields[EXPORT_TYPE]), *bent;
+    char *key = fold_key(text);
+    bool linear = !strcmp(key, "linear"), root = !strcmp(key, "squareroot") || !strcmp(key, "sqrt"),
+         inverts = !strcmp(key, "bitinversion") && type && !strcasecmp(type, "Boolean"),
+         none = !*key || !strcmp(key, "none") || !strcmp(key, "off") || !strcmp(key, "no");
+    mem_free(key);
+    *why = 0;
+    *negate = !strcmp(tag->fields[EXPORT_NEGATE], "1") != inverts;
+    read_ends(tag, EXPORT_RAW_LOW, raw);
+    read_ends(tag, EXPORT_SCALED_LOW, scaled);
+    if (!linear && !root) {
+        bool another = raw->stated && scaled->stated && (raw->low != scaled->low || raw->high != scaled->high);
+        if (!none && !inverts)
+            snprintf(why, 120, "Scaling '%.60s'", text);
+        else if (!*text && another)
+            snprintf(why, 120, "the export has a raw range, but does not state Scaling");
+        return "";
+    }
+    for (int i = 0; i < 4 && !*why; i++)
+        if (!*tag->fields[EXPORT_RAW_LOW + i])
+            snprintf(why, 120, "no %s", names[RAW_LOW + i]);
+    if (!*why && (bent = straighten(linear, raw, scaled, negate)))
+        snprintf(why, 120, "%s", bent);
+    return *why ? "" : linear ? "Linear" : "Square Root";
 }
 
 static void put_scaling(struct tag_rows *rows, struct table_row *row, const struct export_tag *tag)
 {
-    static const enum column columns[] = { RAW_LOW, RAW_HIGH, SCALED_LOW, SCALED_HIGH };
-    const char *cells[4], *scaling = tag->fields[EXPORT_SCALING];
-    bool pairs[2], linear = !strcasecmp(scaling, "Linear"),
-                   root = !strcasecmp(scaling, "Square Root") || !strcasecmp(scaling, "SquareRoot");
-    for (int i = 0; i < 4; i++)
-        cells[i] = tag->fields[EXPORT_RAW_LOW + i];
-    for (int i = 0; i < 2; i++)
-        pairs[i] = *cells[2 * i] && *cells[2 * i + 1] && strtod(cells[2 * i], NULL) < strtod(cells[2 * i + 1], NULL);
-    bool scales = (linear || root) && pairs[0] && pairs[1];
-    put(rows, row, SCALING, scales ? (linear ? "Linear" : "Square Root") : "");
-    for (int i = 0; i < 4; i++)
-        if (i < 2 ? scales : pairs[1])
-            put(rows, row, columns[i], cells[i]);
+    struct tag_range raw, scaled;
+    bool negate;
+    char why[120];
+    const char *scaling = find_scaling(tag, &raw, &scaled, &negate, why);
+    if (*why)
+        tag_names_add(&rows->scalings, tag->fields[EXPORT_NAME], "%s", why);
+    else if (!*scaling && (*tag->fields[EXPORT_SCALED_LOW] == 0) != (*tag->fields[EXPORT_SCALED_HIGH] == 0))
+        tag_names_add(&rows->ranges, tag->fields[EXPORT_NAME], "no %s", names[*tag->fields[EXPORT_SCALED_LOW] ? SCALED_HIGH : SCALED_LOW]);
+    if (!*scaling && scaled.stated && scaled.low > scaled.high)
+        swap_ends(&scaled);
+    put(rows, row, SCALING, scaling);
+    for (int i = 0; i < 2; i++) {
+        if (*scaling)
+            put(rows, row, RAW_LOW + i, raw.texts[i]);
+        if (scaled.stated && scaled.low < scaled.high)
+            put(rows, row, SCALED_LOW + i, scaled.texts[i]);
+    }
+    put(rows, row, NEGATE, negate ? "1" : "");
 }
 
-/* Writes a tag's alarm limits to its row. Omits limits that are not in ascending order: they cannot be alarm limits, and the
- * group's limits apply instead. */
+/* Writes a tag's alarm limits to its row. Omits all of them if they are not in ascending order, because any of them may be wrong. */
 static void put_limits(struct tag_rows *rows, struct table_row *row, const struct export_tag *tag)
 {
-    const char *before = NULL;
+    int before = -1;
     for (int i = 0; i < 4; i++) {
         const char *cell = tag->fields[EXPORT_LL + i];
-        if (*cell && before && strtod(before, NULL) >= strtod(cell, NULL))
+        double limit, last;
+        if (number_parse(cell, &limit) != NUMBER_GOOD)
+            continue;
+        if (before >= 0 && number_parse(tag->fields[EXPORT_LL + before], &last) == NUMBER_GOOD && last >= limit) {
+            tag_names_add(&rows->limits, tag->fields[EXPORT_NAME], "%s %s, %s %s", names[LL + before], tag->fields[EXPORT_LL + before],
+                          names[LL + i], cell);
             return;
-        before = *cell ? cell : before;
+        }
+        before = i;
     }
     for (int i = 0; i < 4; i++)
         put(rows, row, LL + i, tag->fields[EXPORT_LL + i]);
@@ -265,6 +401,14 @@ static void put_equipment(struct tag_rows *rows, struct table_row *row, const st
     }
 }
 
+static void put_values(struct tag_rows *rows, struct table_row *row, const struct tag_row_input *input)
+{
+    put_address(rows, row, input);
+    put_scaling(rows, row, input->tag);
+    put(rows, row, UNITS, input->tag->fields[EXPORT_UNIT]);
+    put_limits(rows, row, input->tag);
+}
+
 /* Returns whether the equipment in an existing row of the tag list may be overwritten: false if a person changed it after the last run. */
 static bool may_put(const struct tag_row_input *input, const char *asset)
 {
@@ -277,24 +421,83 @@ static bool may_put(const struct tag_row_input *input, const char *asset)
     return !strcmp(asset, before->status == MATCH_SURE ? before->asset : "") && strcmp(asset, now) != 0;
 }
 
+/* Returns whether two cells of a column mean the same. */
+static bool same_cell(enum column column, const char *a, const char *b, const struct tag_source *source)
+{
+    struct unit_change change;
+    struct modbus_address address[2];
+    enum data_type types[2];
+    double numbers[2];
+    char why[200];
+    if (!strcasecmp(a, b) && column != ADDRESS)
+        return true;
+    if (column == UNITS)
+        return units_compare(a, b, &change) == UNITS_SAME;
+    if (column == TYPE)
+        return data_type_parse(a, &types[0]) && data_type_parse(b, &types[1]) && types[0] == types[1];
+    if (column == ADDRESS && source->modbus && address_parse(a, source->address_base, &address[0], why) &&
+        address_parse(b, source->address_base, &address[1], why))
+        return address[0].unit == address[1].unit && address[0].table == address[1].table && address[0].index == address[1].index &&
+               address[0].bit == address[1].bit && address[0].byte_order == address[1].byte_order;
+    if (column == ADDRESS)
+        return !strcmp(a, b);
+    return number_parse(a, &numbers[0]) == NUMBER_GOOD && number_parse(b, &numbers[1]) == NUMBER_GOOD && numbers[0] == numbers[1];
+}
+
+/* Returns whether a column of a new row for the tag says something: it has a text, or the export states that it is blank. */
+static bool is_stated(const struct tag_rows *fresh, enum column column, const struct export_tag *tag)
+{
+    if (*table_cell(&fresh->at[1], (int)column))
+        return true;
+    if (column == SCALING)
+        return *tag->fields[EXPORT_SCALING] && fresh->scalings.count == 0;
+    return column == NEGATE && *tag->fields[EXPORT_NEGATE];
+}
+
+/* Adds a tag to `differing` if its row would now be written with another address, type, scaling, unit or limit. The first such
+ * column is named. */
+static void compare(struct tag_rows *rows, const struct table_row *row, const struct tag_row_input *input)
+{
+    static const enum column compared[] = {
+        ADDRESS, TYPE, SCALING, RAW_LOW, RAW_HIGH, SCALED_LOW, SCALED_HIGH, NEGATE, UNITS, LL, L, H, HH
+    };
+    struct tag_rows fresh = { 0 };
+    add_header(&fresh);
+    put_values(&fresh, add_row(&fresh), input);
+    for (size_t i = 0; i < sizeof(compared) / sizeof(*compared); i++) {
+        enum column column = compared[i];
+        const char *ours = table_cell(row, find_column(rows, column)), *theirs = table_cell(&fresh.at[1], (int)column);
+        bool is_default =
+            column == TYPE && !*ours && input->source->modbus && (!strcasecmp(theirs, "Word") || !strcasecmp(theirs, "Boolean"));
+        if (!is_stated(&fresh, column, input->tag) || is_default || same_cell(column, ours, theirs, input->source) ||
+            (column == SCALING && !*theirs && !strcasecmp(ours, "None")) || (column == NEGATE && !*theirs && !strcmp(ours, "0")))
+            continue;
+        tag_names_add(&rows->differing, input->tag->fields[EXPORT_NAME], "%s %.60s, in the export %.60s", names[column],
+                      *ours ? ours : "blank", *theirs ? theirs : "blank");
+        break;
+    }
+    tag_rows_finish(&fresh);
+}
+
 const char *tag_rows_put(struct tag_rows *rows, const struct tag_row_input *input)
 {
     const struct export_tag *tag = input->tag;
     int at = find_row(rows, tag->fields[EXPORT_NAME]);
-    if (at < 0 && is_left_out(tag, input->source))
+    if (at < 0 && is_left_out(rows, tag, input->source))
         return NULL;
     struct table_row *row = at < 0 ? add_row(rows) : &rows->at[at];
     if (at < 0) {
         put(rows, row, NAME, tag->fields[EXPORT_NAME]);
-        put_address(rows, row, input);
-        put_scaling(rows, row, tag);
-        put(rows, row, UNITS, tag->fields[EXPORT_UNIT]);
+        put_values(rows, row, input);
         put(rows, row, DESCRIPTION, tag->fields[EXPORT_DESCRIPTION]);
-        put_limits(rows, row, tag);
         put_equipment(rows, row, input);
     } else {
-        if (!*table_cell(row, find_column(rows, ADDRESS)) && !is_left_out(tag, input->source))
+        struct tag_rows unused = { 0 };
+        bool left_out = is_left_out(&unused, tag, input->source);
+        tag_rows_finish(&unused);
+        if (!*table_cell(row, find_column(rows, ADDRESS)) && !left_out)
             put_address(rows, row, input);
+        compare(rows, row, input);
         if (may_put(input, table_cell(row, find_column(rows, ASSET))))
             put_equipment(rows, row, input);
     }

@@ -6,6 +6,7 @@
 #include "preprocess/match/decisions.h"
 #include "preprocess/match/places.h"
 #include "preprocess/match/table.h"
+#include "preprocess/match/tag_names.h"
 
 struct tag_rows {         /* zero-initialise */
     struct table_row *at; /* all rows of the tag list, existing and added; the first is the header */
@@ -13,6 +14,9 @@ struct tag_rows {         /* zero-initialise */
     int *by_name; /* indices of the rows that the tag list had before the run, sorted by the tag's name */
     size_t known; /* number of rows that the tag list had before the run, including the header */
     char separator;
+    /* What is left out of rows that this run adds, for the result. types: tags that have no row, because their data type is not
+     * known or does not fit the address; differing: tags whose existing row differs from the export */
+    struct tag_names types, scalings, ranges, limits, differing;
 };
 
 struct tag_source { /* the source of the exported tags' values for the daemon */
@@ -35,7 +39,8 @@ struct tag_row_input {
     const char *group; /* id of the tag's group; "": none */
     const struct tag_source *source;
 };
-/* Adds a tag to the list, or updates its row except for cells changed by people. Returns the id of the row's asset ("": no
+/* Adds a tag to the list. If the list has it already, changes only its equipment, unless a person changed that, and a blank
+ * address; the tag is added to `differing` if the export states other values. Returns the id of the row's asset ("": no
  * asset), valid until the next call; NULL if the tag was omitted from the list. */
 const char *tag_rows_put(struct tag_rows *rows, const struct tag_row_input *input);
 /* Appends the tag list as text. Omits columns added by this program that are blank in all rows. */

@@ -155,6 +155,14 @@ test('manual changes stay, and a second run changes nothing', { skip: notBuilt }
     assert.match(second[2], /E-101\.TT-02,sure,V-201,.*by hand/);
     match();
     assert.deepEqual(texts(), second);
+    // A new export states other values: the tag list keeps its own, and the output names the tags.
+    const before = readFileSync(list, 'utf8');
+    writeFileSync(list, before.replace('degC,0,250', 'degC,0,260').replace('LT-201,%', 'LT-201,mm'));
+    assert.match(match(), new RegExp('^2 tags have another address, type, scaling, unit or limit in this export; the tag list keeps ' +
+        'its own: E-101\\.TT-01 \\(Scaled High 250, in the export 260\\), LT-201 \\(Eng Units %, in the export mm\\)$', 'm'));
+    assert.deepEqual(texts()[1], second[1]);
+    writeFileSync(list, before);
+    match();
     // Rules and aliases of the site add matches.
     writeFileSync(join(folder, 'match_rules.csv'), 'Tag,Equipment\n"^FT-9([0-9])9$",P-10\\1\n^FT-999$,P-101\n');
     match();
@@ -361,7 +369,7 @@ for (const last of ['import', 'undo'])
 
 // A tag list exported by Kepware and a plant drawn in PDMS. The test uses both unedited, as a user would.
 const ROOM = `Tag Name,Address,Data Type,Respect Data Type,Client Access,Scan Rate,Scaling,Raw Low,Raw High,Scaled Low,Scaled High,\
-Eng Units,Description
+Eng Units,Description,Negate Value
 "ART1105BA_TT01",400001,Float,1,R/O,100,None,,,0,150,"degC","Tank ART1105BA shell top temperature"
 "ART1105BA_TT02",400003,Float,1,R/O,100,None,,,0,150,"degC","Tank ART1105BA shell bottom temperature"
 "TT-1101",400005,Float,1,R/O,100,None,,,0,120,"degC","Pump ART1101PO bearing DE temperature"
@@ -370,7 +378,7 @@ Eng Units,Description
 "DWX12O1GL-TT-01",400011,Float,1,R/O,100,None,,,0,100,"degC","Duct"
 "ART1101PO_PT01",400013,Float,1,R/O,100,None,,,0,16,"bar(g)","Discharge pressure"
 "ART1101PO_RUN",000001,Boolean,1,R/O,100,None,,,,,"","Running"
-"TT-9011",400015,Float,1,R/O,100,None,,,0,90,"degC","Cooling tower, another unit"
+"TT-9011",400015,Float,1,R/O,100,None,,,0,90,"degC","Cooling tower, another unit",1
 "ART1101PO_TEXT",400017,String,1,R/O,100,None,,,,,"","Last operator"
 `;
 
@@ -390,6 +398,7 @@ test('two systems\' exports become a live picture', { skip: noData, timeout: 240
         'TT-1101 -ART1101PO- temperature equipment', 'art1111po.TE-03 -ART1111PO- temperature equipment',
         'ART1010TY_TI_01 -ART1010TY- temperature equipment', 'DWX12O1GL-TT-01 -DWX1201GL- temperature equipment',
         'ART1101PO_PT01 -ART1101PO- pressure equipment', 'ART1101PO_RUN -ART1101PO-  ', 'TT-9011   ']);
+    assert.deepEqual(rows.map((row) => row['Negate Value']), ['', '', '', '', '', '', '', '', '1']);
     const before = ['plant.yaml', 'tags.csv', 'matches.csv'].map((name) => readFileSync(join(out, name), 'utf8'));
     good(run('plantcast', 'match', out, join(out, 'kepware.csv')));
     assert.deepEqual(['plant.yaml', 'tags.csv', 'matches.csv'].map((name) => readFileSync(join(out, name), 'utf8')), before);

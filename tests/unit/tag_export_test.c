@@ -38,7 +38,7 @@ TEST(test_kepware)
                   "\"Raw High\",\"Scaled Low\",\"Scaled High\",\"Scaled Data Type\",\"Clamp Low\",\"Clamp High\",\"Eng Units\","
                   "\"Description\",\"Negate Value\"\r\n"
                   "\"E101.TT-101\",\"400001\",\"Word\",1,\"R/W\",100,\"Linear\",0,27648,0,200,\"Double\",0,0,\"degC\",\"inlet, "
-                  "\"\"hot\"\" side\",0\r\n"));
+                  "\"\"hot\"\" side\",1\r\n"));
     assert_string_equal(list.format, "Kepware");
     assert_string_equal(list.encoding.name, "UTF-8");
     assert_int_equal(list.separator, ',');
@@ -47,6 +47,7 @@ TEST(test_kepware)
     check(&list, 0, EXPORT_SCALED_HIGH, "200");
     check(&list, 0, EXPORT_UNIT, "degC");
     check(&list, 0, EXPORT_DESCRIPTION, "inlet, \"hot\" side");
+    check(&list, 0, EXPORT_NEGATE, "1");
     assert_int_equal(list.tags[0].line, 2);
     tag_export_finish(&list);
 }
@@ -81,6 +82,24 @@ TEST(test_ignition)
     assert_int_equal(list.count, 1);
     check(&list, 0, EXPORT_ADDRESS, "[plc]HR5");
     check(&list, 0, EXPORT_AREA, "Area1");
+    tag_export_finish(&list);
+    /* the export omits properties that have their default values */
+    assert_true(read_text(&list, "{\"tags\":[{\"name\":\"A\",\"scaleMode\":\"Linear\",\"rawHigh\":4095,\"scaledHigh\":150,\"engHigh\":1},"
+                                 "{\"name\":\"B\",\"scaleMode\":\"SquareRoot\",\"engHigh\":7},"
+                                 "{\"name\":\"C\",\"rawHigh\":4095,\"scaledHigh\":150,\"engHigh\":60},"
+                                 "{\"name\":\"D\",\"scaleMode\":\"Linear\",\"rawHigh\":4095,\"engHigh\":60,"
+                                 "\"scaledHigh\":{\"bindType\":\"parameter\",\"binding\":\"{Max}\"}}]}"));
+    static const char *const scaled[][5] = {
+        { "Linear", "0", "4095", "0", "150" },
+        { "SquareRoot", "0", "10", "0", "10" },
+        { "None", "", "", "0", "60" },
+        { "Linear", "0", "4095", "0", "" } /* the upper end is unknown, not the default */
+    };
+    for (size_t i = 0; i < 4; i++) {
+        check(&list, i, EXPORT_SCALING, scaled[i][0]);
+        for (int f = 0; f < 4; f++)
+            check(&list, i, EXPORT_RAW_LOW + f, scaled[i][1 + f]);
+    }
     tag_export_finish(&list);
     assert_false(read_text(&list, "{\"tags\": [1, }"));
     assert_non_null(strstr(why, "line 1: not JSON"));
@@ -404,6 +423,22 @@ TEST(test_aveva)
     check(&list, 1, EXPORT_RAW_HIGH, "4095");
     check(&list, 1, EXPORT_DEVICE, "PLC1");
     tag_export_finish(&list);
+    /* a limit that InTouch has switched off is exported as a number */
+    assert_true(
+        read_text(&list,
+                  ":IOReal,Group,Comment,Logged,EventLogged,EventLoggingPriority,RetentiveValue,RetentiveAlarmParameters,"
+                  "AlarmValueDeadband,AlarmDevDeadband,EngUnits,InitialValue,MinEU,MaxEU,Deadband,LogDeadband,LoLoAlarmState,"
+                  "LoLoAlarmValue,LoLoAlarmPri,LoAlarmState,LoAlarmValue,LoAlarmPri,HiAlarmState,HiAlarmValue,HiAlarmPri,"
+                  "HiHiAlarmState,HiHiAlarmValue,HiHiAlarmPri,MinorDevAlarmState,MinorDevAlarmValue,MinorDevAlarmPri,"
+                  "MajorDevAlarmState,MajorDevAlarmValue,MajorDevAlarmPri,DevTarget,ROCAlarmState,ROCAlarmValue,ROCAlarmPri,"
+                  "ROCTimeBase,MinRaw,MaxRaw,Conversion,AccessName,ItemUseTagname,ItemName,ReadOnly,AlarmComment\n"
+                  "\"TI102\",\"Unit10\",\"\",No,No,0,No,No,0,0,\"degC\",0,0,250,0,0,Off,0,1,Off,0,1,On,200,1,Off,0,1,Off,0,1,Off,0,1,"
+                  "0,Off,0,1,Min,0,4095,Linear,\"PLC1\",No,\"40003\",No,\"\"\n"));
+    check(&list, 0, EXPORT_LL, "");
+    check(&list, 0, EXPORT_L, "");
+    check(&list, 0, EXPORT_H, "200");
+    check(&list, 0, EXPORT_HH, "");
+    tag_export_finish(&list);
     assert_true(read_text(&list, "; Created on: 3/4/2024\n\n:TEMPLATE=$AnalogDevice\n:Tagname,Area,ShortDesc,PV.EngUnits,PV.EngUnitsMin\n"
                                  "TT_101,Unit10,Outlet,bar,-1\n"));
     assert_string_equal(list.format, "AVEVA Galaxy dump");
@@ -429,6 +464,57 @@ TEST(test_lists)
     assert_true(read_text(&list, "TT-101\nTT-102\n"));
     assert_int_equal(list.count, 2);
     tag_export_finish(&list);
+}
+
+/* Numbers with commas and dots. "1,500" and "1.500" alone do not say which of the two is the decimal separator. */
+TEST(test_numbers)
+{
+    static const struct {
+        const char *kind, *text, *high, *remark; /* high: Scaled High of the first tag; remark: NULL: none */
+    } cases[] = {
+        { "commas separate cells", "Tag,Low,Range High\nT,0,\"1,500\"\n", "1500", NULL },
+        { "commas separate cells, a dot", "Tag,Low,Range High\nT,0,1.500\n", "1.500", NULL },
+        { "decimal commas elsewhere", "Tag;Range Low;Range High\nT;0;1.500\nU;0,5;2\n", "1500", NULL },
+        { "decimal commas elsewhere, a comma", "Tag;Range Low;Range High\nT;0;1,500\nU;0,5;2\n", "1.500", NULL },
+        { "decimal points elsewhere", "Tag;Range Low;Range High\nT;0;1,500\nU;0.5;2\n", "1500", NULL },
+        { "decimal points elsewhere, a dot", "Tag;Range Low;Range High\nT;0;1.500\nU;0.5;2\n", "1.500", NULL },
+        { "nothing elsewhere", "Tag;Range High\nT;1.500\nU;2\n", "1.500",
+          "1 number may have a decimal separator or a separator of thousands: T (Scaled High 1.500 read as 1.500)" },
+        { "nothing elsewhere, a comma", "Tag;Range High\nT;1,500\nU;-2,250\n", "1.500",
+          "2 numbers may have a decimal separator or a separator of thousands: T (Scaled High 1,500 read as 1.500), U (Scaled High "
+          "-2,250 read as -2.250)" },
+        { "both elsewhere", "Tag;Range Low;Range High\nT;0;1,500\nU;0.5;2,25\n", "1.500", "1 number may have" },
+        { "a leading zero", "Tag;Range High\nT;0,125\nU;2\n", "0.125", NULL },
+        { "four digits", "Tag;Range High\nT;1500,250\nU;2\n", "1500.250", NULL },
+        { "both separators", "Tag;Range High\nT;1.234,5\nU;1.500\n", "1234.5", NULL },
+        { "thousands twice", "Tag;Range High\nT;1,234,567\nU;2\n", "1234567", NULL },
+        { "blanks and apostrophes", "Tag;Range High\nT;1 234,5\nU;2'000\n", "1234.5", NULL },
+        { "another minus",
+          "Tag;Range High\nT;\xe2\x88\x92"
+          "40\nU;2\n",
+          "-40", NULL },
+        { "a unit",
+          "Tag,Raw Low,Range High,HH\nT,4 mA,100,90 \xc2\xb0"
+          "C\nU,0,20 mA,-\n",
+          "100",
+          "3 ranges, limits or Negate Values are not numbers, and are left out: T (Raw Low '4 mA'), T (HH '90 \xc2\xb0"
+          "C'), U (Scaled "
+          "High '20 mA')" },
+        { "no number", "Tag,Range High\nT,n/a\nU,-\n", "", NULL },
+        { "groups of other lengths", "Tag,Range High\nT,\"1,2,3\"\n", "", "1 range, limit or Negate Value is not a number" },
+        { "a JSON text", "[{\"name\":\"T\",\"engHigh\":\"1,500\"},{\"name\":\"U\",\"engHigh\":2.5}]", "1500", NULL },
+    };
+    for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
+        struct tag_export list;
+        if (!read_text(&list, cases[i].text))
+            fail_msg("%s: %s", cases[i].kind, why);
+        if (strcmp(list.tags[0].fields[EXPORT_SCALED_HIGH], cases[i].high) != 0)
+            fail_msg("%s: '%s'", cases[i].kind, list.tags[0].fields[EXPORT_SCALED_HIGH]);
+        const char *said = list.remarks.at ? list.remarks.at : "";
+        if (cases[i].remark ? !strstr(said, cases[i].remark) : *said != 0)
+            fail_msg("%s: '%s'", cases[i].kind, said);
+        tag_export_finish(&list);
+    }
 }
 
 TEST(test_encodings)

@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Implements the lists of tag names in lines of the result. */
+#include "preprocess/match/tag_names.h"
+
+#include <stdarg.h>
+
+enum { NAMED = 5 };
+
+void tag_names_add(struct tag_names *names, const char *tag, const char *detail, ...)
+{
+    va_list ap;
+    if (names->count++ >= NAMED)
+        return;
+    text_add(&names->names, "%s%.120s", names->count > 1 ? ", " : "", tag);
+    if (!*detail)
+        return;
+    text_add(&names->names, " (");
+    va_start(ap, detail);
+    text_add_v(&names->names, detail, ap);
+    va_end(ap);
+    text_add(&names->names, ")");
+}
+
+void tag_names_say(const struct tag_names *names, const char *one, const char *many, struct text *out)
+{
+    if (names->count > 0)
+        text_add(out, "%zu %s: %s%s\n", names->count, names->count == 1 ? one : many, names->names.at, names->count > NAMED ? ", ..." : "");
+}
+
+void tag_names_finish(struct tag_names *names)
+{
+    text_finish(&names->names);
+    *names = (struct tag_names){ 0 };
+}
