@@ -294,7 +294,9 @@ CASE(scaling_is_whole)
                     "C,40001,Linear,2,1,0,1,,\n"
                     "D,40001,Square Root,,1,0,inf,,\n"
                     "E,40001,linear,0,1,0,1,maybe,\n"
-                    "F,40001,,0,1,0,1,,1\n");
+                    "F,40001,,0,1,0,1,,1\n"
+                    "G,40001,,,,,100,,\n"
+                    "H,40001,,,,low,,,\n");
     assert_null(c->plant);
     FOUND(c, { "tags.csv", 2, 9, "Scaling: expected None, Linear or Square Root, found 'Cubic'" },
           { "tags.csv", 3, 20, "Scaled Low: expected less than Scaled High, which is 5, found 5" },
@@ -302,7 +304,9 @@ CASE(scaling_is_whole)
           { "tags.csv", 5, 21, "Raw Low: expected a number, because Scaling is Square Root" },
           { "tags.csv", 5, 26, "Scaled High: expected a finite number, found 'inf'" },
           { "tags.csv", 6, 24, "Negate Value: expected 0 or 1, found 'maybe'" },
-          { "tags.csv", 7, 10, "Scaling is blank, so the raw range has no effect" }, { "tags.csv", 7, 19, "Clamp Low has no effect" });
+          { "tags.csv", 7, 10, "Scaling is blank, so the raw range has no effect" }, { "tags.csv", 7, 19, "Clamp Low has no effect" },
+          { "tags.csv", 8, 12, "Scaled Low: expected a number, because Scaled High is given" },
+          { "tags.csv", 9, 12, "Scaled Low: expected a number, found 'low'" });
 }
 
 CASE(numbers_have_ranges_and_limits_rise)

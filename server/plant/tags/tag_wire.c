@@ -181,7 +181,10 @@ static void read_range(struct tag_wire *wire, enum tag_column low, enum tag_colu
     if (errors != wire->columns->csv.diag->errors)
         return;
     enum tag_column missing = has_low ? high : low;
-    if (!has_low || !has_high)
+    if ((!has_low || !has_high) && wire->tag->scale.kind == SCALING_NONE)
+        cell_error(wire->columns, missing, "%s: expected a number, because %s is given", tag_column_name(missing),
+                   tag_column_name(has_low ? low : high));
+    else if (!has_low || !has_high)
         cell_error(wire->columns, missing, "%s: expected a number, because Scaling is %s", tag_column_name(missing),
                    cell_text(wire->columns, COL_SCALING));
     else if (*out_low >= *out_high)
@@ -202,7 +205,7 @@ static void read_scaling(struct tag_wire *wire)
     if (tag->scale.kind != SCALING_NONE && is_number(wire))
         cell_error(wire->columns, COL_SCALING, "Scaling: expected None, because the value is already in engineering units");
     tag->scale.has_range =
-        tag->scale.kind != SCALING_NONE || (cell_given(wire->columns, COL_SCALED_LOW) && cell_given(wire->columns, COL_SCALED_HIGH));
+        tag->scale.kind != SCALING_NONE || cell_given(wire->columns, COL_SCALED_LOW) || cell_given(wire->columns, COL_SCALED_HIGH);
     if (tag->scale.kind != SCALING_NONE)
         read_range(wire, COL_RAW_LOW, COL_RAW_HIGH, &tag->scale.raw_low, &tag->scale.raw_high);
     else if (!*text && cell_given(wire->columns, COL_RAW_LOW) && cell_given(wire->columns, COL_SCALED_LOW))

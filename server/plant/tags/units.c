@@ -105,7 +105,10 @@ static const struct unit_entry units[] = {
     { "l/s", VOLUME_FLOW, 1e-3, 0 },
     { "l/min|lpm", VOLUME_FLOW, 1e-3 / MINUTE, 0 },
     { "l/h|l/hr", VOLUME_FLOW, 1e-3 / HOUR, 0 },
-    { "ml/min", VOLUME_FLOW, 1e-6 / MINUTE, 0 },
+    { "ml/min|mL/min", VOLUME_FLOW, 1e-6 / MINUTE, 0 },
+    { "Ml/min|ML/min", VOLUME_FLOW, 1e3 / MINUTE, 0 },
+    { "l/d|l/day", VOLUME_FLOW, 1e-3 / DAY, 0 },
+    { "Ml/d|ML/d|Ml/day|ML/day|MLD", VOLUME_FLOW, 1e3 / DAY, 0 },
     { "ft3/s|cfti/s|cfs", VOLUME_FLOW, CUBIC_FOOT, 0 },
     { "ft3/min|cfti/min|cfm|acfm", VOLUME_FLOW, CUBIC_FOOT / MINUTE, 0 },
     { "ft3/h|ft3/hr|cfti/h|cfh|acfh", VOLUME_FLOW, CUBIC_FOOT / HOUR, 0 },
@@ -194,12 +197,14 @@ static const struct unit_entry units[] = {
     { "m3", VOLUME, 1, 0 },
     { "l", VOLUME, 1e-3, 0 },
     { "hl", VOLUME, 0.1, 0 },
-    { "ml", VOLUME, 1e-6, 0 },
+    { "ml|mL", VOLUME, 1e-6, 0 },
+    { "Ml|ML", VOLUME, 1e3, 0 },
     { "ft3|cfti", VOLUME, CUBIC_FOOT, 0 },
     { "gal|galus", VOLUME, GALLON, 0 },
     { "bbl|bblus", VOLUME, BARREL, 0 },
     { "kg", MASS, 1, 0 },
     { "mg", MASS, 1e-6, 0 },
+    { "Mg", MASS, 1e3, 0 },
     { "t|tonne", MASS, 1e3, 0 },
     { "lb|lbm|lbav", MASS, POUND, 0 },
     { "kg/m3|g/l", DENSITY, 1, 0 },
@@ -296,6 +301,21 @@ static bool has_name(const struct unit_entry *unit, const char *name, bool exact
     return false;
 }
 
+/* Returns whether a name differs from a unit's name in the case of its first letter, and this letter is the prefix milli or mega:
+ * MA is a megaampere, not the milliampere of the table. */
+static bool has_other_prefix(const struct unit_entry *unit, const char *name)
+{
+    for (const char *at = unit->names; at; at = strchr(at, '|') ? strchr(at, '|') + 1 : NULL) {
+        size_t bytes = strcspn(at, "|");
+        if (bytes != strlen(name) || *at == *name || !strchr("mM", *at) || strncmp(at + 1, name + 1, bytes - 1) != 0)
+            continue;
+        for (size_t i = 0; i < UNIT_COUNT; i++)
+            if (units[i].kind == unit->kind && has_name(&units[i], name + 1, false))
+                return true;
+    }
+    return false;
+}
+
 /* Finds a unit by name: first exactly, then ignoring case. The second search must find exactly one unit: MPA could be MPa or mPa. */
 static const struct unit_entry *look_up(const char *name)
 {
@@ -306,7 +326,7 @@ static const struct unit_entry *look_up(const char *name)
     for (size_t i = 0; i < UNIT_COUNT; i++) {
         if (!has_name(&units[i], name, false))
             continue;
-        if (found)
+        if (found || has_other_prefix(&units[i], name))
             return NULL;
         found = &units[i];
     }
