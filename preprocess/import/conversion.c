@@ -84,6 +84,8 @@ static void say_counts(struct text *said, const struct rvm_counts *counts)
     if (counts->covered_faces > 0)
         text_add(said, "left out: %zu faces, %.1f m2, that are hidden behind a neighbouring face (--keep-covered keeps hidden faces)\n",
                  counts->covered_faces, counts->covered_m2);
+    if (counts->no_end)
+        text_add(said, "error\t1\tRVM: the file has no end mark (END:), so parts may be missing: export the model again\n");
     if (counts->unknown_chunks > 0)
         text_add(said, "error\t%zu\tRVM: parts of the file (chunks) of unknown kinds were skipped; the first one is %s\n",
                  counts->unknown_chunks, counts->unknown_chunk);

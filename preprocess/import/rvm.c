@@ -296,6 +296,7 @@ static bool read_chunks(struct rvm_reader *r)
             return false;
         r->at = next;
     }
+    r->counts->no_end = true;
     return true;
 }
 

@@ -16,6 +16,7 @@ struct rvm_counts {
     size_t empty;
     size_t unknown_chunks, unknown_kinds; /* number of unknown chunks, and of primitives of unknown kinds; all are skipped */
     char unknown_chunk[40];               /* the first unknown chunk, as "ABCD at byte 120" */
+    bool no_end;                          /* the file has no chunk END: it may have been cut off between two chunks */
     struct charset_choice encoding;       /* encoding of the names */
 };
 

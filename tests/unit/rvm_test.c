@@ -383,6 +383,7 @@ TEST(test_broken_files_are_refused_at_a_byte)
     }
     for (int i = 0; i < 6; i++)
         end_group(file);
+    size_t end_mark = file->length + 16; /* length of the file up to and including the name of the chunk END */
     begin(file, "END:");
     for (size_t i = 0; i < 2 * file->length; i++) {
         size_t length = i < file->length ? i : file->length;
@@ -395,6 +396,10 @@ TEST(test_broken_files_are_refused_at_a_byte)
         if (!rvm_read(model, copy, length, &params, &counts, why, sizeof(why))) {
             assert_true(strncmp(why, "byte ", 5) == 0);
             refused++;
+        } else if (length < end_mark) {
+            assert_true(counts.no_end);
+        } else if (i < file->length) {
+            assert_false(counts.no_end);
         }
         cad_model_destroy(&model);
         free(copy);
