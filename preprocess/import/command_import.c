@@ -184,12 +184,31 @@ static void write_report(const struct import_command *import)
     mem_free(text);
 }
 
+/* Keeps a file that an import without a plant would replace, as PATH.1, or PATH.2 if PATH.1 exists, and so on. Returns an exit status. */
+static int keep_old(const char *path)
+{
+    struct stat old, unused;
+    char *kept = NULL;
+    if (lstat(path, &old) != 0)
+        return 0;
+    for (int i = 1; !kept || lstat(kept, &unused) == 0; i++) {
+        mem_free(kept);
+        kept = mem_printf("%s.%d", path, i);
+    }
+    int status = rename(path, kept) == 0 ? 0 : import_fail(path, strerror(errno));
+    if (status == 0)
+        printf("%s: the previous file is kept as %s\n", path, kept);
+    mem_free(kept);
+    return status;
+}
+
 static int move_all(const struct import_command *import)
 {
     int status = 0;
     for (int i = 0; i < import->count && status == 0; i++) {
         char *from = mem_printf("%s/%d.glb", import->work.path, i), *to = mem_printf("%s/%s", import->folder, import->models[i].file);
-        if (rename(from, to) != 0)
+        status = keep_old(to);
+        if (status == 0 && rename(from, to) != 0)
             status = import_fail(to, strerror(errno));
         mem_free(from);
         mem_free(to);

@@ -3,7 +3,7 @@
 // another converter made from the same exports.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { existsSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { gzipSync } from 'node:zlib';
@@ -241,10 +241,16 @@ test('nodes without surface area do not become assets', { skip: notBuilt }, () =
         bufferViews: [0, 36].map((byteOffset) => ({ buffer: 0, byteOffset, byteLength: 36 })),
         buffers: [{ byteLength: 72, uri: `data:application/octet-stream;base64,${bytes.toString('base64')}` }] });
     writeFileSync(join(folder, 'a.gltf'), model([1, 1, 1]));
+    // a folder without a plant may have files of the user: the import keeps them
+    mkdirSync(out);
+    writeFileSync(join(out, 'a.glb'), 'mine');
+    writeFileSync(join(out, 'a.glb.1'), 'older');
     const { status, stdout, stderr } = run('plantcast', 'import', join(folder, 'a.gltf'), '-o', out);
     assert.equal(status, 0, stderr);
     for (const node of ['#0 LINE', '#2 FLAT', '#3 BOTH'])
         assert.match(stdout, new RegExp(`lost: ${node} \\(node\\): none of the node's triangles has an area`));
+    assert.match(stdout, /a\.glb: the previous file is kept as .*a\.glb\.2$/m);
+    assert.deepEqual(['a.glb.1', 'a.glb.2'].map((name) => readFileSync(join(out, name), 'utf8')), ['older', 'mine']);
     const ids = [...readFileSync(join(out, 'plant.yaml'), 'utf8').matchAll(/\{ id: "(\w+)", model:/g)].map(([, id]) => id);
     assert.deepEqual(ids, ['SHEET', 'BOTH']);
     const prepared = run('plantcast-prep', join(out, 'plant.yaml'));
