@@ -3,7 +3,7 @@
 // restored files and the drawn picture equal those of the first host.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
-import { cpSync, existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { cpSync, existsSync, mkdirSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { hostname } from 'node:os';
 import { join } from 'node:path';
 import { after, test } from 'node:test';
@@ -192,6 +192,29 @@ test('a wrong key, a damaged file and a newer version are refused by name, and t
     assert.match(third.run('plantcast init p1').err, /exists already/);
 });
 
+test('models outside of the plant\'s folder are in a backup without secrets; other files there are not', options, () => {
+    const host = new BareRoot(folder);
+    cpSync(plant.folder, host.path('root/plant'), { recursive: true });
+    ok(host.run(`plantcast init p1 --plant /root/plant --host localhost && mkdir -p ${STATE}/history '/srv/cad/Halle süd' /srv/linked
+        cd /srv/cad && echo glb >'Halle süd/Kessel 1.glb' && echo bin >'Halle süd/teil 2.bin'
+        echo png >tile.png && echo key >a.password
+        echo '{"buffers": [{"uri": "teil%202.bin"}], "images": [{"uri": "../tile.png"}, {"uri": "data:image/png;base64,AA=="}]}' \\
+            >'Halle süd/b.gltf'
+        echo glb >v2.glb && ln -s v2.glb newest.glb && echo glb >/srv/linked/c.glb && ln -s /srv/linked ${ETC}/linked
+        echo 'MODELS="/srv/cad/newest.glb /srv/cad/a.password"' >>${ETC}/options
+        echo "  x: { model: /srv/cad/Halle süd/Kessel 1.glb, y: 1 }
+          model: /srv/cad/Halle süd/b.gltf  # comment" >>${ETC}/options`));
+    ok(host.run('plantcast backup p1 --without-secrets -o /root/b'));
+    const names = ok(host.run('tar --quoting-style=literal -tf /root/b/etc.tar')).split('\n');
+    for (const name of ['Halle süd/Kessel 1.glb', 'Halle süd/b.gltf', 'Halle süd/teil 2.bin', 'tile.png', 'newest.glb', 'v2.glb'])
+        assert.ok(names.includes(`srv/cad/${name}`), `${name} is not in ${names.join(', ')}`);
+    assert.ok(names.includes('srv/linked/c.glb') && !names.some((name) => /password|tokens/.test(name)), names.join(', '));
+    ok(host.run('rm -r /etc/plantcast /var/lib/plantcast /srv/cad /srv/linked'));
+    const out = ok(host.run('plantcast restore /root/b'));
+    assert.match(out, /systemctl enable --now plantcastd@p1 plantcast-backup@p1\.timer/);
+    assert.equal(ok(host.run(`cat '/srv/cad/Halle süd/teil 2.bin' /srv/cad/newest.glb ${ETC}/linked/c.glb`)), 'bin\nglb\nglb\n');
+});
+
 test('backup and restore work with a passphrase typed at age\'s prompt, and a wrong one restores nothing',
     { ...options, skip: options.skip || (has('script') ? false : 'no script') }, () => {
     const host = new BareRoot(folder);
@@ -258,6 +281,16 @@ test('a backup is sent to another host by SFTP, and restored from there',
         const dropped = host.run(`plantcast backup p1 --without-secrets --to ${drop} --keep 2 -o /root/d`);
         assert.deepEqual([dropped.code, /older backups were not deleted there/.test(dropped.err)], [0, true], dropped.err);
         assert.ok(readdirSync(kept).includes(`${mine}d`), dropped.err);
-        const away = host.run(`plantcast backup p1 --without-secrets --to sftp://root@127.0.0.1:${sshPort}/proc/nothing -o /root/c`);
-        assert.deepEqual([away.code, /was not copied; it is in \/root\/c/.test(away.err)], [1, true], away.err);
+        // a failed copy or hook: the metrics keep the time of the last good backup, and old backups are deleted all the same
+        const stamp = () => statSync(host.path(`${STATE}/history/last-backup`)).mtimeMs, good = stamp();
+        const local = () => readdirSync(host.path('var/backups/plantcast/p1')).sort();
+        const gone = host.path('var/backups/plantcast/p1/2026-01-01T000000Z');
+        mkdirSync(gone);
+        const away = host.run(`plantcast backup p1 --without-secrets --to sftp://root@127.0.0.1:${sshPort}/proc/nothing --keep 1`);
+        assert.deepEqual([away.code, /was not copied; it is in \/var/.test(away.err)], [1, true], away.err);
+        assert.deepEqual([stamp(), existsSync(gone), local().length], [good, false, 1]);
+        const hooked = host.run('plantcast backup p1 --without-secrets --hook /bin/false -o /root/e');
+        assert.deepEqual([hooked.code, stamp()], [1, good], hooked.err);
+        ok(host.run('plantcast backup p1 --without-secrets -o /root/f'));
+        assert.ok(stamp() > good);
     });

@@ -255,7 +255,8 @@ static bool back_up(struct backup_job *job, const struct plant *plant, const cha
             remove_folder(part);
     }
     if (good) {
-        leave_stamp(history);
+        if (json_array_size(job->added) == 0) /* else deploy/backup writes the stamp once the backup is verified and copied */
+            leave_stamp(history);
         printf("%s: %zu files\n", out, json_array_size(job->files));
     }
     mem_free(history);
