@@ -21,6 +21,8 @@ struct transfer {
     char why[CURL_ERROR_SIZE];
     struct log *log;
     int *refused;      /* counts refused mailboxes */
+    bool in_data;      /* true: the last command of the SMTP dialogue was DATA, so a reply concerns the message itself */
+    bool is_refused;   /* true: the mail server refused the message itself */
     const char *name;  /* id of the recipient in the plant file, for the log */
     char mailbox[256]; /* mailbox named by the last RCPT command of the SMTP dialogue; empty: the last command was another one */
 };
@@ -30,7 +32,7 @@ struct delivery {
     const struct plant_notify *notify;
     CURLM *multi;
     struct transfer *transfers; /* by recipient: its transfer */
-    int refused_mailboxes;
+    int *refused_mailboxes;     /* by recipient: how often a mailbox was refused */
 };
 
 struct delivery *delivery_create(struct log *log, const struct plant_notify *notify)
@@ -39,6 +41,7 @@ struct delivery *delivery_create(struct log *log, const struct plant_notify *not
     delivery->log = log;
     delivery->notify = notify;
     delivery->transfers = mem_array(notify->recipient_count + 1, sizeof(*delivery->transfers));
+    delivery->refused_mailboxes = mem_array(notify->recipient_count + 1, sizeof(*delivery->refused_mailboxes));
     if (curl_global_init(CURL_GLOBAL_DEFAULT) != CURLE_OK || !(delivery->multi = curl_multi_init())) {
         log_err(log, "notify: messages cannot be sent: libcurl cannot be initialised");
         delivery_destroy(&delivery);
@@ -66,6 +69,7 @@ void delivery_destroy(struct delivery **pointer)
         end_transfer(delivery, &delivery->transfers[i]);
     curl_multi_cleanup(delivery->multi);
     mem_free(delivery->transfers);
+    mem_free(delivery->refused_mailboxes);
     mem_free(delivery);
     *pointer = NULL;
 }
@@ -93,8 +97,14 @@ static size_t drop_answer(char *bytes, size_t size, size_t count, void *arg)
     return size * count;
 }
 
+/* Returns true for replies to DATA and its text that will not change if the message is sent again: too large, or transaction failed. */
+static bool refuses_message(const char *bytes, int length)
+{
+    return length >= 3 && (!strncmp(bytes, "552", 3) || !strncmp(bytes, "554", 3));
+}
+
 /* Debug callback of libcurl. Logs when the mail server refuses a single mailbox: nothing else reports that, because the mail
-   counts as delivered if other mailboxes accept it. */
+   counts as delivered if other mailboxes accept it. Also finds out whether the mail server refuses the message itself. */
 static int hear_refusals(CURL *handle, curl_infotype type, char *bytes, size_t count, void *arg)
 {
     static const char ask[] = "RCPT TO:";
@@ -102,6 +112,10 @@ static int hear_refusals(CURL *handle, curl_infotype type, char *bytes, size_t c
     size_t skipped = sizeof(ask) - 1;
     int length = (int)(count < 400 ? count : 400);
     (void)handle;
+    if (type == CURLINFO_HEADER_OUT)
+        transfer->in_data = count >= 4 && !strncmp(bytes, "DATA", 4);
+    else if (type == CURLINFO_HEADER_IN && transfer->in_data && refuses_message(bytes, length))
+        transfer->is_refused = true;
     while (length > 0 && (bytes[length - 1] == '\r' || bytes[length - 1] == '\n'))
         length--;
     if (type == CURLINFO_HEADER_OUT && (size_t)length > skipped && !strncmp(bytes, ask, skipped))
@@ -199,7 +213,7 @@ char *delivery_start(struct delivery *delivery, int recipient, char *body, size_
                                    .body = body,
                                    .bytes = bytes,
                                    .log = delivery->log,
-                                   .refused = &delivery->refused_mailboxes,
+                                   .refused = &delivery->refused_mailboxes[recipient],
                                    .name = to->id };
     char *why = !transfer->handle          ? mem_strdup("out of memory")
                 : to->kind == NOTIFY_EMAIL ? set_mail(delivery, transfer, to)
@@ -230,7 +244,18 @@ static char *why_not(const struct transfer *transfer, CURLcode code)
     return is_http && (status < 200 || status > 299) ? mem_printf("the server answered with HTTP status %ld", status) : NULL;
 }
 
-void delivery_wait(struct delivery *delivery, int timeout_ms, void (*each)(void *arg, int recipient, const char *why), void *arg)
+/* Returns true if the server refused the message itself: the mail server's reply to it, or an HTTP status that concerns its content. */
+static bool is_refused(const struct transfer *transfer)
+{
+    long status = 0;
+    char *scheme = NULL;
+    curl_easy_getinfo(transfer->handle, CURLINFO_RESPONSE_CODE, &status);
+    curl_easy_getinfo(transfer->handle, CURLINFO_SCHEME, &scheme);
+    bool is_http = scheme && !strncasecmp(scheme, "http", 4);
+    return is_http ? status == 400 || status == 413 || status == 422 : transfer->is_refused;
+}
+
+void delivery_wait(struct delivery *delivery, int timeout_ms, delivery_ended *each, void *arg)
 {
     int running, left;
     curl_multi_perform(delivery->multi, &running);
@@ -243,8 +268,9 @@ void delivery_wait(struct delivery *delivery, int timeout_ms, void (*each)(void 
         struct transfer *transfer = NULL;
         curl_easy_getinfo(message->easy_handle, CURLINFO_PRIVATE, (char **)&transfer);
         char *why = why_not(transfer, code);
+        bool refused = why && is_refused(transfer);
         end_transfer(delivery, transfer);
-        each(arg, (int)(transfer - delivery->transfers), why);
+        each(arg, (int)(transfer - delivery->transfers), why, refused);
         mem_free(why);
     }
 }
@@ -254,7 +280,7 @@ void delivery_wake(struct delivery *delivery)
     curl_multi_wakeup(delivery->multi);
 }
 
-int delivery_refused_mailboxes(const struct delivery *delivery)
+int delivery_refused_mailboxes(const struct delivery *delivery, int recipient)
 {
-    return delivery->refused_mailboxes;
+    return delivery->refused_mailboxes[recipient];
 }

@@ -19,10 +19,13 @@ bool delivery_is_idle(const struct delivery *delivery, int recipient);
 /* Starts sending a message to an idle recipient. Takes ownership of `body` (mem_free). Returns NULL on success, or the reason why
    sending cannot start (free with mem_free()). */
 char *delivery_start(struct delivery *delivery, int recipient, char *body, size_t bytes);
-/* Waits up to timeout_ms for network activity, and calls each() for every message that was sent or failed; `why` is NULL if the
-   recipient's server accepted the message. */
-void delivery_wait(struct delivery *delivery, int timeout_ms, void (*each)(void *arg, int recipient, const char *why), void *arg);
-int delivery_refused_mailboxes(const struct delivery *delivery); /* returns the number of mailboxes that mail servers have refused so far */
+/* Called for a message that was sent or failed. why: NULL if the recipient's server accepted the message, else the reason.
+   is_refused: true: the server refuses this message itself (for example its size), so that sending it again is useless. */
+typedef void delivery_ended(void *arg, int recipient, const char *why, bool is_refused);
+/* Waits up to timeout_ms for network activity, and calls each() for every message that was sent or failed. */
+void delivery_wait(struct delivery *delivery, int timeout_ms, delivery_ended *each, void *arg);
+/* Returns how often the mail server has refused a mailbox of the recipient so far. */
+int delivery_refused_mailboxes(const struct delivery *delivery, int recipient);
 void delivery_wake(struct delivery *delivery); /* Makes delivery_wait() return. Call from any thread. */
 
 #endif

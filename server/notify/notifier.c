@@ -19,7 +19,7 @@
 enum { TICK_MS = 1000, REST_MS = 60000, FILE_BYTES = 64 << 20 };
 
 struct recipient_counters {
-    counter *sent, *failed, *waiting;
+    counter *sent, *failed, *waiting, *mailboxes;
 };
 
 struct notifier {
@@ -128,15 +128,17 @@ static const struct notify_recipient *recipient_of(const struct notifier *notifi
     return &notifier->params.plant->notify->recipients[recipient];
 }
 
-static void on_end(void *arg, int recipient, const char *why)
+static void on_end(void *arg, int recipient, const char *why, bool is_refused)
 {
     struct notifier *notifier = arg;
     struct log *log = notifier->params.log;
     const char *id = recipient_of(notifier, recipient)->id;
     if (why) {
-        outbox_failed(notifier->outbox, recipient, now_us());
+        (is_refused ? outbox_refused : outbox_failed)(notifier->outbox, recipient, now_us());
         counter_inc(notifier->counters[recipient].failed, 1);
-        if (!notifier->failing[recipient])
+        if (is_refused)
+            log_err(log, "notify: %s refuses a message: %s; the message is shortened, or dropped if it is short", id, why);
+        else if (!notifier->failing[recipient])
             log_err(log, "notify: %s cannot be reached: %s; messages are queued and sent later", id, why);
     } else {
         outbox_sent(notifier->outbox, recipient, now_us());
@@ -162,7 +164,7 @@ static void send_due(struct notifier *notifier)
         save(notifier);
         char *why = delivery_start(notifier->delivery, i, body, bytes);
         if (why)
-            on_end(notifier, i, why);
+            on_end(notifier, i, why, false);
         mem_free(why);
     }
 }
@@ -183,11 +185,13 @@ static void on_alarm(void *arg, const struct alarm *alarm)
 
 static void count(struct notifier *notifier)
 {
-    for (int i = 0; i < (int)notifier->params.plant->notify->recipient_count; i++)
+    for (int i = 0; i < (int)notifier->params.plant->notify->recipient_count; i++) {
         counter_set(notifier->counters[i].waiting, outbox_counts(notifier->outbox, i).waiting);
+        counter_set(notifier->counters[i].mailboxes, delivery_refused_mailboxes(notifier->delivery, i));
+    }
     int64_t lost = outbox_counts(notifier->outbox, 0).lost;
     if (lost > notifier->lost_before) {
-        log_err(notifier->params.log, "notify: %lld alarm messages lost: not stored, or not delivered within a day",
+        log_err(notifier->params.log, "notify: %lld alarm messages lost: not stored, refused, or not delivered within a day",
                 (long long)(lost - notifier->lost_before));
         counter_inc(notifier->lost, lost - notifier->lost_before);
     }
@@ -236,9 +240,11 @@ static void add_counters(struct notifier *notifier)
                                                    "Attempts to deliver an alarm message that failed, by recipient.");
         notifier->counters[i].waiting =
             add_counter(notifier, "plantcast_notify_waiting", id, "gauge", "Alarms whose message waits for delivery, by recipient.");
+        notifier->counters[i].mailboxes = add_counter(notifier, "plantcast_notify_mailboxes_refused_total", id, "counter",
+                                                      "Refusals of single mailboxes by the mail server, by recipient.");
     }
-    notifier->lost =
-        counters_add(counters, "plantcast_notify_lost_total", "counter", "Alarm messages lost: not stored, or not delivered within a day.");
+    notifier->lost = counters_add(counters, "plantcast_notify_lost_total", "counter",
+                                  "Alarm messages lost: not stored, refused, or not delivered within a day.");
     notifier->spool_good = counters_add(counters, "plantcast_notify_spool_good", "gauge",
                                         "1 while alarm messages that wait for delivery can be stored on disk.");
     counter_set(notifier->spool_good, 1);

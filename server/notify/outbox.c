@@ -246,12 +246,17 @@ void outbox_end_unseen(struct outbox *outbox, int64_t now_us)
 
 /* --- passing of time -------------------------------------------------------------------------------------------------------- */
 
-static void give_up(struct outbox *outbox, struct recipient_box *box)
+/* Drops all but the first `kept` alarms of a message that cannot be delivered. */
+static void drop_alarms(struct outbox *outbox, struct recipient_box *box, size_t kept)
 {
-    outbox->lost += (int64_t)box->batch_count;
-    outbox->items -= box->batch_count;
-    box->left_out += (int64_t)box->batch_count;
-    free_batch(box);
+    size_t dropped = box->batch_count - kept;
+    outbox->lost += (int64_t)dropped;
+    outbox->items -= dropped;
+    box->left_out += (int64_t)dropped;
+    while (box->batch_count > kept)
+        mem_free(box->batch[--box->batch_count].name);
+    if (kept == 0)
+        free_batch(box);
     box->attempts = 0;
     outbox->dirty = true;
 }
@@ -271,7 +276,7 @@ void outbox_tick(struct outbox *outbox, int64_t now_us)
            alarms, so it does not become outdated */
         bool keeps = outbox->plant->notify->recipients[i].kind == NOTIFY_ALERTMANAGER;
         if (!keeps && box->batch_count > 0 && box->attempts > 0 && now_us - box->batch_us > OUTBOX_KEEP_US)
-            give_up(outbox, box);
+            drop_alarms(outbox, box, 0);
     }
 }
 
@@ -294,6 +299,12 @@ static bool is_due(const struct outbox *outbox, const struct recipient_box *box,
     bool gathered = now_us - box->since_us >= (int64_t)(notify->gather_s * (double)S) || now_us < box->since_us;
     bool paused = box->sent_us && now_us >= box->sent_us && now_us - box->sent_us < (int64_t)(notify->pause_s * (double)S);
     return box->waiting.count > 0 && gathered && (!paused || best < box->last_priority);
+}
+
+static void make_id(struct outbox *outbox, int recipient, int64_t now_us)
+{
+    struct recipient_box *box = &outbox->boxes[recipient];
+    snprintf(box->id, sizeof(box->id), "%llx.%llx.%x", (unsigned long long)now_us, (unsigned long long)++outbox->made, (unsigned)recipient);
 }
 
 /* Makes a message of the alarms queued for a recipient, with their present states. Leaves out alarms that were shelved or
@@ -320,7 +331,7 @@ static void make_batch(struct outbox *outbox, int recipient, int64_t now_us)
     qsort(box->batch, box->batch_count, sizeof(*box->batch), by_urgency);
     box->batch_us = now_us;
     box->attempts = 0;
-    snprintf(box->id, sizeof(box->id), "%llx.%llx.%x", (unsigned long long)now_us, (unsigned long long)++outbox->made, (unsigned)recipient);
+    make_id(outbox, recipient, now_us);
     outbox->dirty = true;
     if (box->batch_count == 0)
         free_batch(box);
@@ -413,6 +424,18 @@ void outbox_failed(struct outbox *outbox, int recipient, int64_t now_us)
         free_batch(box);
         box->changed = true;
     }
+}
+
+void outbox_refused(struct outbox *outbox, int recipient, int64_t now_us)
+{
+    struct recipient_box *box = &outbox->boxes[recipient];
+    if (outbox->plant->notify->recipients[recipient].kind == NOTIFY_ALERTMANAGER) {
+        outbox_failed(outbox, recipient, now_us); /* the next message has all alarms anyway */
+        return;
+    }
+    drop_alarms(outbox, box, box->batch_count > OUTBOX_SHORT ? OUTBOX_SHORT : 0);
+    make_id(outbox, recipient, now_us);
+    box->retry_us = 0;
 }
 
 struct outbox_counts outbox_counts(const struct outbox *outbox, int recipient)

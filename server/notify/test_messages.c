@@ -26,9 +26,10 @@ static void print_result(struct test_run *run, int recipient, const char *why)
     run->failed += why != NULL;
 }
 
-static void on_end(void *arg, int recipient, const char *why)
+static void on_end(void *arg, int recipient, const char *why, bool is_refused)
 {
     struct test_run *run = arg;
+    (void)is_refused;
     print_result(run, recipient, why);
     run->waiting--;
 }
@@ -56,7 +57,9 @@ int test_messages_send(struct log *log, const struct plant *plant, FILE *out)
     }
     while (run.waiting > 0)
         delivery_wait(delivery, 1000, on_end, &run);
-    int refused = delivery_refused_mailboxes(delivery);
+    int refused = 0;
+    for (int i = 0; i < (int)notify->recipient_count; i++)
+        refused += delivery_refused_mailboxes(delivery, i);
     if (refused > 0)
         fprintf(out, "mail servers refused %d mailbox%s: the warnings name each\n", refused, refused == 1 ? "" : "es");
     delivery_destroy(&delivery);

@@ -80,6 +80,8 @@ notify:
             assert.match(first.body, /^P3 {2}[\d-]+ [\d:]+ {2}TI-1 high, left: raised at 55 °C \(limit 50 °C\); E-101, Tank farm\r$/m);
             assert.match(first.body, /https:\/\/p\.example\//);
             await plant.daemon.line(/warn +notify: ops: the mail server refused <gone@p\.example>: 550 5\.1\.1 no such mailbox/);
+            await until('the refusal is counted', async () =>
+                await plant.metric('plantcast_notify_mailboxes_refused_total{recipient="ops"}') === 1);
             await until('it is counted', async () => await plant.metric('plantcast_notify_sent_total{recipient="ops"}') === 1);
             await plant.daemon.stop('SIGKILL');
             await plant.startDaemon();
@@ -200,6 +202,41 @@ notify:
         assert.equal(await plant.metric('plantcast_notify_waiting{recipient="hook"}'), 1);
         hook.status = 200;
         await until('that it is told', () => hook.taken.length > 0);
+    } finally {
+        await hook.close();
+        await plant.destroy();
+    }
+});
+
+test('a message that a receiver refuses for good is shortened, and later alarms reach the receiver', options, async () => {
+    const hook = Object.assign(new HookServer(), { most: 16000 }), EXTRA = 100;
+    await hook.listen();
+    const plant = await createPlant(`alarms: local
+notify:
+  gather_s: 3
+  pause_s: 0
+  recipients: [{ id: hook, webhook: "http://127.0.0.1:${hook.port}/" }]
+  rules: [{ id: all, to: hook }]
+`, EXTRA);
+    try {
+        await calm(plant, EXTRA);
+        await plant.startDaemon();
+        await isCalm(plant);
+        plant.daemon.child.kill('SIGSTOP');
+        for (let i = 0; i < EXTRA; i++)
+            await set(plant, `X-${i}`, limits.high);
+        plant.daemon.child.kill('SIGCONT');
+        const [short] = await until('the shortened message', () => hook.taken.length > 0 && hook.taken);
+        assert.deepEqual([short.alarms.length, short.left_out, hook.posts[0].status], [50, EXTRA - 50, 413]);
+        assert.notEqual(short.id, hook.posts[0].body.id);
+        hook.most = 10; // even the shortest message is too large
+        await set(plant, 'TI-1', limits.high);
+        await until('it is refused', async () => await plant.metric('plantcast_notify_lost_total') === EXTRA - 50 + 1);
+        hook.most = 16000;
+        await set(plant, 'TI-2', limits.high);
+        await until('a later alarm', () => hook.taken.length > 1);
+        assert.deepEqual(hook.taken[1].alarms.map(({ tag }) => tag), ['TI-2']);
+        assert.equal(hook.taken[1].left_out, 1);
     } finally {
         await hook.close();
         await plant.destroy();

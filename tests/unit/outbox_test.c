@@ -249,6 +249,36 @@ CASE(an_outage_delays_and_does_not_multiply)
     assert_int_equal(outbox_counts(f->outbox, OPS).lost, 0);
 }
 
+/* A receiver that refuses a message for good, for example because of its size, must not hold up later alarms. */
+CASE(a_refused_message_is_shortened_and_then_dropped)
+{
+    struct outbox_message message;
+    char id[OUTBOX_ID_BYTES];
+    load(f, "  - { id: all, to: ops }\n");
+    for (int i = 0; i < 400; i++)
+        put(f, i, LOCAL, true, true, T0, T0);
+    assert_true(outbox_next(f->outbox, OPS, T0 + 4 * S, &message));
+    assert_int_equal(message.count, 400);
+    memcpy(id, message.id, sizeof(id));
+    outbox_refused(f->outbox, OPS, T0 + 4 * S);
+    restart(f);
+    assert_true(outbox_next(f->outbox, OPS, T0 + 4 * S, &message)); /* the shortened message is due at once */
+    assert_int_equal(message.count, OUTBOX_SHORT);
+    assert_int_equal(message.left_out, 400 - OUTBOX_SHORT);
+    assert_int_equal(message.items[OUTBOX_SHORT - 1].priority, 1); /* the most urgent alarms stay */
+    assert_string_not_equal(message.id, id);
+    outbox_refused(f->outbox, OPS, T0 + 5 * S);
+    assert_int_equal(outbox_counts(f->outbox, OPS).waiting, 0);
+    assert_int_equal(outbox_counts(f->outbox, OPS).lost, OUTBOX_SHORT); /* counted since the restart */
+    put(f, 400, LOCAL, true, true, T0 + 6 * S, T0 + 6 * S);
+    outbox_tick(f->outbox, T0 + 10 * S);
+    assert_true(outbox_next(f->outbox, OPS, T0 + 10 * S, &message));
+    assert_int_equal(message.count, 1);
+    assert_int_equal(message.left_out, 400);
+    outbox_sent(f->outbox, OPS, T0 + 10 * S);
+    assert_int_equal(deliver(f, OPS, T0 + 200 * S), 0);
+}
+
 CASE(what_waits_is_bounded_and_said)
 {
     load(f, "  - { id: all, to: ops }\n");

@@ -121,10 +121,11 @@ function readMail(text) {
     return { headers, subject: words(headers.subject), body: Buffer.from(rest.join(''), 'base64').toString() };
 }
 
-// Accepts JSON by POST. status: HTTP status of its answers; 0: it never answers.
+// Accepts JSON by POST. status: HTTP status of its answers; 0: it never answers. most: size in bytes of the largest body that it
+// accepts; it answers 413 to larger ones.
 export class HookServer {
     constructor() {
-        Object.assign(this, { posts: [], status: 200 });
+        Object.assign(this, { posts: [], status: 200, most: Infinity });
     }
 
     async listen(port = null) {
@@ -132,10 +133,10 @@ export class HookServer {
             let text = '';
             request.on('data', (bytes) => { text += bytes; });
             request.on('end', () => {
-                const { url, headers } = request;
-                this.posts.push({ url, headers, body: JSON.parse(text), status: this.status });
-                if (this.status)
-                    response.writeHead(this.status).end('{}');
+                const { url, headers } = request, status = text.length > this.most ? 413 : this.status;
+                this.posts.push({ url, headers, body: JSON.parse(text), status });
+                if (status)
+                    response.writeHead(status).end('{}');
             });
         });
         this.server.listen(port ?? await freePort(), '127.0.0.1');
