@@ -243,6 +243,34 @@ notify:
     }
 });
 
+test('a mail whose text the mail server refuses for good does not hold up later mails', options, async () => {
+    const port = await freePort();
+    const plant = await createPlant(`alarms: local
+notify:
+  gather_s: 0
+  pause_s: 0
+  mail: { server: "smtps://localhost:${port}", from: plant@p.example, ca_file: mail.pem }
+  recipients: [{ id: ops, email: ops@p.example }]
+  rules: [{ id: all, to: ops }]
+`), mail = Object.assign(new MailServer(plant.folder), { mode: 'content' });
+    try {
+        await mail.listen(port);
+        await calm(plant);
+        await plant.startDaemon();
+        await isCalm(plant);
+        await set(plant, 'TI-1', limits.high);
+        await until('it is dropped', async () => await plant.metric('plantcast_notify_lost_total') === 1);
+        mail.mode = 'take';
+        await set(plant, 'TI-2', limits.high);
+        await until('a later mail', () => mail.mails.length > 0);
+        assert.match(mail.mails[0].body, /TI-2 high[^]*\n1 more alarms are not listed/);
+        assert.doesNotMatch(mail.mails[0].body, /TI-1/);
+    } finally {
+        await mail.close();
+        await plant.destroy();
+    }
+});
+
 // outbox_test checks with a simulated clock that an acknowledged alarm is not escalated
 test('an alarm that nobody acknowledges is sent to the next recipient; a failed message is repeated with its id', options, async () => {
     const hooks = [new HookServer(), new HookServer()];

@@ -10,7 +10,7 @@ import { createSecureContext, TLSSocket } from 'node:tls';
 import { freePort } from './ports.mjs';
 
 // A mail server that implements only the part of RFC 5321 that one message needs. mode: 'take', 'hang' (never answers),
-// 'refuse' (550 to every recipient), 'busy' (451). starttls true: TLS starts on request, and no mail is accepted before; false:
+// 'refuse' (550 to every recipient), 'busy' (451), 'content' (554 to every text). starttls true: TLS starts on request, and no mail is accepted before; false:
 // TLS from the first byte.
 export class MailServer {
     constructor(folder, { starttls = false, user = null, password = null } = {}) {
@@ -84,7 +84,7 @@ export class MailServer {
                 return say('530 log in first');
             if (verb === 'MAIL')
                 mail.from = line;
-            if (verb === 'RCPT' && this.mode !== 'take')
+            if (verb === 'RCPT' && ['refuse', 'busy'].includes(this.mode))
                 return say(this.mode === 'refuse' ? '550 no such mailbox' : '451 later');
             if (verb === 'RCPT' && line.includes('<gone@'))
                 return say('550 5.1.1 no such mailbox');
@@ -103,6 +103,10 @@ export class MailServer {
                     continue;
                 }
                 inData = false;
+                if (this.mode === 'content') {
+                    say('554 5.6.0 content refused');
+                    continue;
+                }
                 this.mails.push({ ...mail, ...readMail(part) });
                 mail.to = [];
                 say('250 taken');
