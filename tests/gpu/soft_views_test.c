@@ -163,6 +163,30 @@ TEST(test_still_camera)
     toy_fill(stand.snapshot, 0);
 }
 
+/* The camera stands still while the user chooses another group and then the operator view: markers, and the greys of surfaces
+   without a field, must be those of the new choice. */
+TEST(test_other_group_of_a_still_camera)
+{
+    struct toy *toy = toy_unit();
+    struct plant *plant = &toy->plant;
+    struct stand two;
+    plant->groups[1] = plant->groups[0];
+    plant->group_count = 2;
+    for (size_t i = 1; i < plant->tag_count; i += 2)
+        plant->tags[i].group = 1;
+    stand_init(&two, &rig, toy);
+    toy_fill(two.snapshot, 0);
+    for (int look = LOOK_DEFAULT; look <= LOOK_MATERIALS; look += LOOK_MATERIALS - LOOK_DEFAULT)
+        for (int i = 0; i < 9; i++) {
+            struct view view = soft_view(&two, TIER_PREVIEW, 320, 200);
+            view.look = (enum look)look;
+            view.field.group = i / 3 % 2;
+            view.field.show = i < 6 ? SHOW_VALUE : SHOW_OPERATOR;
+            soft_assert_like_gl(&two, &view, 0.02);
+        }
+    stand_finish(&two);
+}
+
 /* The camera stands still, and then is moved or an asset is hidden: the next frame must be drawn again and must not reuse the
    cached one. */
 TEST(test_moves_after_standing)

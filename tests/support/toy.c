@@ -11,7 +11,7 @@
 #include "tests/support/no_textures.h"
 #include "value/quality.h"
 
-enum { MAX_ASSETS = 512, MAX_TAGS = 4200 };
+enum { MAX_ASSETS = 512, MAX_TAGS = 4200, MAX_GROUPS = 2 };
 
 struct toy *toy_create(void)
 {
@@ -22,7 +22,7 @@ struct toy *toy_create(void)
     plant->up = AXIS_Z;
     plant->assets = mem_array(MAX_ASSETS, sizeof(*plant->assets));
     plant->tags = mem_array(MAX_TAGS, sizeof(*plant->tags));
-    plant->groups = mem_array(1, sizeof(*plant->groups));
+    plant->groups = mem_array(MAX_GROUPS, sizeof(*plant->groups));
     plant->group_count = 1;
     plant->groups[0] = (struct plant_group){ .id = mem_strdup("temperature"),
                                              .quantity = mem_strdup("Temperature"),

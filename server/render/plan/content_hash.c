@@ -41,13 +41,14 @@ static void add_visibility(XXH3_state_t *state, const struct frame_plan *plan)
     hash_bytes(state, visibility->clip.planes, planes * sizeof(visibility->clip.planes[0]));
 }
 
-/* Hashes everything that a frame shows except the field's values and colours: camera, visible assets and light. */
+/* Hashes everything that a frame shows except the field's values and colours: camera, visible assets, light, and the group, whose
+   sensors' markers are part of the frame. In the operator view, surfaces without a field are grey. */
 static void add_shape(XXH3_state_t *state, const struct frame_plan *plan)
 {
     const struct view *view = &plan->view;
     int32_t choices[] = { view->width_px,           view->height_px,   (int32_t)view->look,        (int32_t)view->tier,
                           view->selected_asset,     view->environment, (int32_t)view->field.trial, view->dark,
-                          (int32_t)view->directions };
+                          (int32_t)view->directions, view->field.group, view_is_operator(view) };
     double numbers[] = { view->camera.fov_deg, view->camera.height_m };
     hash_bytes(state, choices, sizeof(choices));
     hash_bytes(state, numbers, sizeof(numbers));

@@ -6,8 +6,8 @@
 
 /* Returns the hash of the plan's view and of the fields of its visible assets. Sequence numbers and the time of input are left out. */
 uint64_t content_hash(const struct frame_plan *plan);
-/* Returns the hash of everything that decides which triangle each pixel shows and in what light. Frames that differ only in
-   values and colours have the same hash. */
+/* Returns the hash of everything that decides which triangle each pixel shows and in what light, and which sensors have markers.
+   Frames that differ only in values and colours have the same hash. */
 uint64_t content_hash_shape(const struct frame_plan *plan);
 
 #endif
