@@ -276,6 +276,39 @@ TEST(test_sensors)
     stand_finish(&stand);
 }
 
+/* Where all places are assumed, one sensor colours an asset: in the operator view one with limits. A pick names the sensor that
+   colours the asset, and its reading. */
+TEST(test_assumed_places)
+{
+    struct stand stand;
+    struct pick_case site;
+    struct view view;
+    struct pick pick = { .asset = -1 };
+    double x_px = 0;
+    stand_init(&stand, &rig, toy_unit());
+    stand_site(&stand, &site);
+    for (int i = 0; i < 8; i++) {
+        stand.toy->plant.tags[i].place.assumed = true;
+        toy_set(site.snapshot, i, 50, QUALITY_GOOD);
+    }
+    stand.toy->plant.tags[0].alarms.limits[LIMIT_L] = 40;
+    stand.toy->plant.tags[0].alarms.limits[LIMIT_H] = 60;
+    toy_set(site.snapshot, 0, 52, QUALITY_GOOD);
+    toy_set(site.snapshot, 1, 95, QUALITY_GOOD);
+    view_default(site.scene, WIDTH_PX, HEIGHT_PX, &view);
+    for (; pick.asset != stand.toy->plant.tags[0].asset && x_px < WIDTH_PX; x_px++)
+        pick_at(site.scene, site.field, &view, site.snapshot, x_px, HEIGHT_PX / 2.0, &pick);
+    assert_true(pick.assumed && pick.nearest_count == 1 && pick.nearest[0].tag == 1 && pick.value == 95);
+    view.field.show = SHOW_OPERATOR;
+    pick_at(site.scene, site.field, &view, site.snapshot, x_px - 1, HEIGHT_PX / 2.0, &pick);
+    assert_true(pick.assumed && pick.nearest_count == 1 && pick.nearest[0].tag == 0 && pick.value == 52);
+    stand.toy->plant.tags[0].alarms.limits[LIMIT_L] = stand.toy->plant.tags[0].alarms.limits[LIMIT_H] = NAN;
+    view.range_max = 99; /* another view: none of the tags has limits */
+    pick_at(site.scene, site.field, &view, site.snapshot, x_px - 1, HEIGHT_PX / 2.0, &pick);
+    assert_true(pick.assumed && pick.nearest_count == 1);
+    stand_finish(&stand);
+}
+
 /* In a split view, a pick must use the view of the half in which it lies. */
 TEST(test_split_view)
 {

@@ -140,24 +140,39 @@ static bool is_measured(const struct pick_spot *spot, const struct field_params 
            pick->nearest[0].distance_m <= fmax(MEASURED_M, MEASURED_PX * spot->meter_per_pixel);
 }
 
-static void read_place(struct pick_spot *spot, struct field *field, struct pick *out)
+static void read_place_as(const struct pick_spot *spot, struct field *field, const struct field_params *params, struct pick *out)
 {
-    struct field_params params = spot->view->field;
-    if (params.show == SHOW_OPERATOR)
-        params.show = SHOW_VALUE;
     struct field_place place;
     struct field_point point;
     memcpy(place.corners, spot->hit.corners, sizeof(place.corners));
     memcpy(place.parts, spot->hit.weights, sizeof(place.parts));
-    if (out->inside || !field_at(field, out->asset, &params, spot->snapshot, &place, &point))
+    if (out->inside || !field_at(field, out->asset, params, spot->snapshot, &place, &point))
         return;
     out->state = point.no_data ? PICK_NO_DATA : PICK_BETWEEN;
     out->uncertain = point.uncertain;
     out->value = point.value;
     out->drawn_error = point.drawn_error;
-    read_sensors(spot, field, &params, &place, out);
-    if (is_measured(spot, &params, out))
+    read_sensors(spot, field, params, &place, out);
+    if (is_measured(spot, params, out))
         out->state = PICK_MEASURED;
+}
+
+static void read_place(const struct pick_spot *spot, struct field *field, struct pick *out)
+{
+    struct field_params params = spot->view->field;
+    if (params.show == SHOW_OPERATOR && field_is_assumed(field, out->asset, &params)) {
+        /* one sensor colours the asset, chosen among those with limits: states its reading, not its place between the limits */
+        struct pick one = *out;
+        read_place_as(spot, field, &params, &one);
+        if (one.nearest_count > 0) {
+            one.value = one.nearest[0].value;
+            *out = one;
+            return;
+        }
+    }
+    if (params.show == SHOW_OPERATOR)
+        params.show = SHOW_VALUE;
+    read_place_as(spot, field, &params, out);
 }
 
 void pick_at(const struct scene *scene, struct field *field, const struct view *view, const struct snapshot *snapshot, double x_px,
