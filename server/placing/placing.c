@@ -9,6 +9,7 @@
 
 #include "base/mem.h"
 #include "placing/mover.h"
+#include "plant/influence.h"
 #include "plant/models/transform.h"
 #include "scene/far_sensors.h"
 #include "surface/relocation.h"
@@ -417,7 +418,11 @@ void placing_request_coverage(struct placing *placing, const struct place_set *s
     struct sensor_coverage_job *job = mem_new(sizeof(*job));
     *job = (struct sensor_coverage_job){
         .placing = placing,
-        .order = { .scene = scene, .group = group, .mode = of->distance, .reach_m = of->reach_m, .far_m = far_m },
+        .order = { .scene = scene,
+                   .group = group,
+                   .mode = interpolation_is_prepared(of->interpolation) ? DISTANCE_GEODESIC : of->distance,
+                   .reach_m = of->reach_m,
+                   .far_m = far_m },
         .good = mem_array(scene->plant->tag_count, 1),
         .answer = mem_new(sizeof(*job->answer))
     };

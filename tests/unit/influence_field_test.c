@@ -639,6 +639,10 @@ CASE(test_blind_places_are_told_where_gp_knows_nothing)
         begin(c, "", ", interpolation: gp, gp: { range_m: 0.8, noise: 0.5, deviation: 30 }, disc_m: 0.1, hot_spot_m: 0.2", 2);
     assert_true(look(u, STRIP_M - 0.5)->no_data);
     u->params.show = SHOW_BLIND;
+    /* like the field itself, the map measures along the surface, even if the group has straight-line distances */
+    struct field_params room;
+    u->params.distance = DISTANCE_EUCLIDEAN;
+    assert_int_equal(field_params_of(u->field, 0, &u->params, &room)->distance, DISTANCE_GEODESIC);
     assert_int_equal(look(u, STRIP_M - 0.5)->no_data, 0);
     assert_true(look(u, STRIP_M - 0.5)->value >= 100);
     assert_true(fabs((double)look(u, place_of(1))->value - 5) < 0.5);
