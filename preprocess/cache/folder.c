@@ -247,17 +247,19 @@ static char *manifest_text(struct log *log, const char *folder, const struct fol
 {
     json_t *assets = json_array(), *root = json_pack("{s:i, s:o}", "format", 2, "assets", assets);
     for (size_t i = 0; i < count; i++) {
-        char key[KEY_DIGITS + 1], recipe[KEY_DIGITS + 1], model[KEY_DIGITS + 1], *file = folder_file_name(entries[i].key);
+        char key[KEY_DIGITS + 1], recipe[KEY_DIGITS + 1], model[KEY_DIGITS + 1], cuts[KEY_DIGITS + 1];
+        char *file = folder_file_name(entries[i].key);
         snprintf(key, sizeof(key), "%016" PRIx64, entries[i].key);
         snprintf(recipe, sizeof(recipe), "%016" PRIx64, entries[i].recipe);
         snprintf(model, sizeof(model), "%016" PRIx64, entries[i].model);
+        snprintf(cuts, sizeof(cuts), "%016" PRIx64, entries[i].cuts);
         json_t *placement = json_array(), *tags = json_array();
         for (size_t n = 0; n < 16; n++)
             json_array_append_new(placement, json_real(entries[i].placement[n]));
         for (size_t t = 0; t < entries[i].tag_count; t++)
             json_array_append_new(tags, json_string(entries[i].tags[t]));
-        json_t *asset = json_pack("{s:s, s:s, s:s, s:s, s:s, s:o, s:o}", "id", entries[i].id, "file", file, "key", key, "recipe", recipe,
-                                  "model", model, "placement", placement, "tags", tags);
+        json_t *asset = json_pack("{s:s, s:s, s:s, s:s, s:s, s:s, s:o, s:o}", "id", entries[i].id, "file", file, "key", key, "recipe", recipe,
+                                  "model", model, "cuts", cuts, "placement", placement, "tags", tags);
         const char *missing = entries[i].missing;
         if (missing) {
             json_t *why = json_string(missing);

@@ -67,6 +67,7 @@ struct folder_entry {
     /* recipe: hash of all inputs of the asset except its sensors (plant/recipe.h); model: hash of the model file, of all files that it
      * refers to, and of panoramas and fitted readings */
     uint64_t key, recipe, model;
+    uint64_t cuts; /* hash of the parameters for which triangles were cut (plant_cuts_recipe()) */
     uint64_t geometry_key, distances_key;
     const char *missing;     /* reason why the asset has no prepared file; NULL: it has one */
     const double *placement; /* matrix of 16 numbers, column-major: transform from the asset frame to the plant frame */

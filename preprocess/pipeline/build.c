@@ -27,21 +27,6 @@ static void hash_text(XXH3_state_t *state, const char *text)
     XXH3_64bits_update(state, text ? text : "", text ? strlen(text) + 1 : 1);
 }
 
-/* Returns the number of sensors on the asset in the same group as sensor `sensor`. Does not count those with an assumed
-   position (only their equipment is known). */
-static size_t count_of_group(const struct plant *plant, const struct plant_sensor *sensors, size_t count, size_t sensor)
-{
-    size_t found = 0;
-    for (size_t i = 0; i < count; i++)
-        found += plant->tags[sensors[i].tag].group == plant->tags[sensors[sensor].tag].group && !plant->tags[sensors[i].tag].place.assumed;
-    return found;
-}
-
-static bool is_alone(const struct plant *plant, const struct plant_sensor *sensors, size_t count, size_t sensor)
-{
-    return count_of_group(plant, sensors, count, sensor) == !plant->tags[sensors[sensor].tag].place.assumed;
-}
-
 /* Returns whether all points of the asset show the same value. This is so if each group has only one sensor on the asset,
    Shepard interpolation, and no reach (distance beyond which a sensor has no influence). Distances then do not affect the
    picture. */
@@ -49,7 +34,7 @@ static bool is_constant(const struct plant *plant, const struct plant_sensor *se
 {
     for (size_t i = 0; i < count; i++) {
         const struct plant_group *group = &plant->groups[plant->tags[sensors[i].tag].group];
-        if (group->reach_m < INFINITY || plant_cuts_for_paper(group, 1) || !is_alone(plant, sensors, count, i))
+        if (group->reach_m < INFINITY || plant_cuts_for_paper(group, 1) || !plant_sensor_is_alone(plant, sensors, count, i))
             return false;
     }
     return true;
@@ -74,31 +59,6 @@ static void hash_gp(XXH3_state_t *state, const struct plant *plant, const struct
         XXH3_64bits_update(state, numbers, sizeof(numbers));
         XXH3_64bits_update(state, &readings, sizeof(readings));
     }
-}
-
-/* Hashes the settings in the plant file that subdivision depends on. */
-static void hash_field(XXH3_state_t *state, const struct plant *plant, const struct plant_sensor *sensors, size_t count, size_t sensor)
-{
-    const struct plant_tag *tag = &plant->tags[sensors[sensor].tag];
-    const struct plant_group *group = &plant->groups[tag->group];
-    const double numbers[5] = { tag->group, tag->strength, tag->decay, group->power, group->radius_m };
-    XXH3_64bits_update(state, numbers, sizeof(numbers));
-    if (group->reach_m < INFINITY)
-        XXH3_64bits_update(state, &group->reach_m, sizeof(group->reach_m));
-    const struct plant_asset *asset = &plant->assets[tag->asset];
-    const double prepared[3] = { group->prepared, group->disc_m, plant_prepares(group, INTERPOLATION_FIN) ? plant_decay_m(asset) : 0 };
-    if (plant_prepares_any(group))
-        XXH3_64bits_update(state, prepared, sizeof(prepared));
-    if (group->heat)
-        XXH3_64bits_update(state, "h", 1);
-    if (group->directed)
-        XXH3_64bits_update(state, "d", 1);
-    if (is_alone(plant, sensors, count, sensor) && !plant_cuts_for_paper(group, 1))
-        XXH3_64bits_update(state, "s", 1);
-    if (plant_group_is_exact(group))
-        XXH3_64bits_update(state, "x", 1);
-    if (tag->place.assumed)
-        XXH3_64bits_update(state, "e", 1);
 }
 
 uint64_t build_recipe(uint64_t model_hash, const struct geometry_params *geometry)
@@ -135,8 +95,8 @@ uint64_t build_key(uint64_t geometry_key, const struct plant *plant, const struc
     for (size_t i = 0; i < sensor_count; i++) {
         hash_text(&state, sensors[i].node);
         XXH3_64bits_update(&state, sensors[i].position_m, sizeof(sensors[i].position_m));
-        hash_field(&state, plant, sensors, sensor_count, i);
     }
+    XXH3_64bits_update(&state, &(uint64_t){ plant_cuts_recipe(plant, sensors, sensor_count) }, sizeof(uint64_t));
     hash_gp(&state, plant, sensors, sensor_count);
     if (sensor_count && !sensor_distances_matter(plant, sensors, sensor_count))
         XXH3_64bits_update(&state, "a", 1);

@@ -580,6 +580,7 @@ static void write_manifest(struct prepare_run *run)
                                             .distances_key = asset->distances_key,
                                             .recipe = plant_recipe(asset->plant, prepare->models.at[asset->model].file_hash),
                                             .model = prepare->models.at[asset->model].hash ^ named,
+                                            .cuts = plant_cuts_recipe(prepare->plant, asset->sensors, asset->sensor_count),
                                             .placement = asset->plant->placement,
                                             .missing = asset->missing,
                                             .tags = next,

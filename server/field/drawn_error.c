@@ -650,7 +650,8 @@ static bool measure_level(struct drawn_error_job *job, const struct asset_level 
     job->members_marked = unmarked;
     const size_t blocks = (level->vertex_count + KERNEL_BLOCK - 1) / KERNEL_BLOCK;
     /* preparation cuts triangles at ridges, except for groups whose field is evaluated at each pixel with straight-line distances */
-    const bool has_ridges = weights->distance != DISTANCE_EUCLIDEAN && (plant_group_is_exact(layout->group) || layout->trial);
+    const bool has_ridges =
+        weights->distance != DISTANCE_EUCLIDEAN && (plant_group_is_exact(layout->group) || layout->trial || layout->file->cuts_differ);
     const bool amplifies = amplifies_distances(weights);
     if (has_ridges)
         job->ridges = mem_try_array(layout->file->view.header->index_count / 3, sizeof(float));

@@ -8,6 +8,9 @@
 #include <xxhash.h>
 
 #include "base/mem.h"
+#include "plant/exact.h"
+#include "plant/influence.h"
+#include "plant/singles.h"
 
 enum { CHUNK_BYTES = 1 << 20 };
 
@@ -44,4 +47,39 @@ uint64_t plant_recipe(const struct plant_asset *asset, uint64_t model_hash)
         .tolerance_m = asset->tolerance_m,
     };
     return XXH3_64bits(&recipe, sizeof(recipe));
+}
+
+/* Returns the hash of the parameters of one sensor and its group. */
+static uint64_t cuts_recipe_of(const struct plant *plant, const struct plant_sensor *sensors, size_t count, size_t sensor)
+{
+    const struct plant_tag *tag = &plant->tags[sensors[sensor].tag];
+    const struct plant_group *group = &plant->groups[tag->group];
+    /* no triangles are cut for the value of a group whose field is evaluated at each pixel */
+    const bool cuts = !plant_group_is_exact(group), prepares = plant_prepares_any(group);
+    struct { /* without padding */
+        double group, strength, decay, power, radius_m, reach_m, prepared, disc_m, decay_m;
+        uint64_t flags;
+    } recipe = {
+        .group = tag->group,
+        .strength = cuts ? tag->strength : 0,
+        .decay = cuts ? tag->decay : 0,
+        .power = cuts ? group->power : 0,
+        .radius_m = cuts ? group->radius_m : 0,
+        .reach_m = cuts ? group->reach_m : 0,
+        .prepared = prepares ? group->prepared : 0,
+        .disc_m = prepares ? group->disc_m : 0,
+        .decay_m = plant_prepares(group, INTERPOLATION_FIN) ? plant_decay_m(&plant->assets[tag->asset]) : 0,
+        .flags = (uint64_t)group->heat | (uint64_t)group->directed << 1 | (uint64_t)cuts << 2 |
+                 (uint64_t)tag->place.assumed << 3 |
+                 (uint64_t)(plant_sensor_is_alone(plant, sensors, count, sensor) && !plant_cuts_for_paper(group, 1)) << 4,
+    };
+    return XXH3_64bits(&recipe, sizeof(recipe));
+}
+
+uint64_t plant_cuts_recipe(const struct plant *plant, const struct plant_sensor *sensors, size_t count)
+{
+    uint64_t sum = 0;
+    for (size_t i = 0; i < count; i++)
+        sum += cuts_recipe_of(plant, sensors, count, i);
+    return sum;
 }

@@ -42,3 +42,12 @@ size_t plant_sensors(const struct plant *plant, int asset, struct plant_sensor *
     }
     return count;
 }
+
+bool plant_sensor_is_alone(const struct plant *plant, const struct plant_sensor *sensors, size_t count, size_t sensor)
+{
+    const struct plant_tag *of = &plant->tags[sensors[sensor].tag];
+    for (size_t i = 0; i < count; i++)
+        if (i != sensor && plant->tags[sensors[i].tag].group == of->group && !plant->tags[sensors[i].tag].place.assumed)
+            return false;
+    return true;
+}

@@ -22,6 +22,8 @@ struct asset {
     /* bit mask of levels of detail whose triangles plantcast-prep has subdivided until interpolating within them causes no
        visible error of the field (field/drawn_error.h) */
     uint64_t resolved_levels;
+    /* true: triangles were cut for other parameters or sensors than those of the plant file, so no level counts as resolved */
+    bool cuts_differ;
     _Atomic int refs;
     /* by level of detail: triangles that bound closed bodies, whose cuts are drawn solid (closed_bodies.h); NULL: not computed yet */
     struct closed_bodies *_Atomic *closed;

@@ -44,6 +44,7 @@ static bool read_entry(struct log *log, struct manifest *manifest, size_t index,
                 manifest->path, index);
         return false;
     }
+    const char *cuts = json_string_value(json_object_get(item, "cuts"));
     const char *surface = json_string_value(json_object_get(item, "surface"));
     const char *missing = json_string_value(json_object_get(item, "missing"));
     struct manifest_entry *entry = &manifest->entries[index];
@@ -52,7 +53,8 @@ static bool read_entry(struct log *log, struct manifest *manifest, size_t index,
                                       .surface = file_name_good(surface) ? mem_strdup(surface) : NULL,
                                       .missing = missing ? mem_strdup(missing) : NULL,
                                       .recipe = strtoull(recipe, NULL, 16),
-                                      .model = model ? strtoull(model, NULL, 16) : 0 };
+                                      .model = model ? strtoull(model, NULL, 16) : 0,
+                                      .cuts = cuts ? strtoull(cuts, NULL, 16) : 0 };
     entry->resolved_levels = (uint64_t)json_integer_value(json_object_get(item, "resolved_levels"));
     const json_t *left_out = json_object_get(item, "left_out");
     entry->left_out = mem_array(json_array_size(left_out) + 1, sizeof(*entry->left_out));

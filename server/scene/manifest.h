@@ -17,6 +17,7 @@ struct manifest {
         uint64_t recipe;          /* hash of all inputs of the asset except its sensors (plant/recipe.h) */
         /* hash of the model file and of all files that it refers to, when they were prepared; 0: an older plantcast-prep wrote none */
         uint64_t model;
+        uint64_t cuts;            /* hash of the parameters for which triangles were cut (plant_cuts_recipe()); 0: older file */
         uint64_t resolved_levels; /* bit mask of levels of detail, as in struct asset (scene/asset.h) */
         /* names of textures and extensions of the asset's model that are not drawn. If several assets use a model, only the
            first one has this list */

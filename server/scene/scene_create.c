@@ -205,17 +205,24 @@ static bool create_missing(struct log *log, struct scene_asset *asset, const str
     return asset->file != NULL;
 }
 
+struct file_use {
+    const char *name; /* name of the asset's file in the prepared folder */
+    int asset;
+    uint64_t cuts;            /* as in struct manifest_entry (scene/manifest.h) */
+    uint64_t resolved_levels; /* bit mask of levels of detail, as in struct asset (scene/asset.h) */
+};
+
 /* Checks that the asset's opened file matches the plant file's sensors and the group settings, and places the asset and its
    sensors in the scene. Logs and returns false if the file could not be opened or does not match. */
-static bool create_asset(struct log *log, struct scene *scene, int index)
+static bool create_asset(struct log *log, struct scene *scene, const struct file_use *use)
 {
-    struct scene_asset *asset = &scene->assets[index];
+    struct scene_asset *asset = &scene->assets[use->asset];
     struct plant_sensor *sensors = NULL;
     if (!asset->file) {
         log_err(log, "asset %s: the prepared file is missing, damaged or outdated; run plantcast-prep again", asset->plant->id);
         return false;
     }
-    size_t count = plant_sensors(scene->plant, index, &sensors);
+    size_t count = plant_sensors(scene->plant, use->asset, &sensors);
     bool good = sensors_fit(log, scene->plant, asset, sensors, count) && influence_fits(log, scene->plant, asset, sensors, count);
     if (good) {
         place(asset);
@@ -223,18 +230,14 @@ static bool create_asset(struct log *log, struct scene *scene, int index)
         asset->sensor_count = count;
         for (size_t i = 0; i < count; i++)
             place_sensor(asset, (int)i, sensors[i].tag, &asset->sensors[i]);
+        asset->file->cuts_differ |= plant_cuts_recipe(scene->plant, sensors, count) != use->cuts;
+        asset->file->resolved_levels = asset->file->cuts_differ ? 0 : use->resolved_levels;
     }
     mem_free(sensors);
     return good;
 }
 
 /* --- files ------------------------------------------------------------------------------------------------------------------ */
-
-struct file_use {
-    const char *name; /* name of the asset's file in the prepared folder */
-    int asset;
-    uint64_t resolved_levels; /* bit mask of levels of detail, as in struct asset (scene/asset.h) */
-};
 
 struct file_uses {
     struct log *log;
@@ -302,7 +305,7 @@ static bool find_file(struct file_uses *uses, const struct manifest *manifest, s
     if (!recipe_fits(log, scene->plant, hashes->files, index, entry))
         return false;
     hashes->shown[index] = entry->model ? entry->model : hashes->files[index];
-    uses->at[uses->count++] = (struct file_use){ entry->file, index, entry->resolved_levels };
+    uses->at[uses->count++] = (struct file_use){ entry->file, index, entry->cuts, entry->resolved_levels };
     return true;
 }
 
@@ -320,6 +323,21 @@ static bool bound_missing(struct scene *scene)
     return scene->bounds_min_m[0] <= scene->bounds_max_m[0];
 }
 
+/* Logs how many assets have triangles that were cut for other parameters or sensors than those of the plant file. */
+static void say_cuts_differ(struct log *log, const struct scene *scene)
+{
+    const char *first = NULL;
+    size_t count = 0;
+    for (size_t i = 0; i < scene->asset_count; i++)
+        if (scene->assets[i].file && scene->assets[i].file->cuts_differ && count++ == 0)
+            first = scene->assets[i].plant->id;
+    if (count > 0)
+        log_warn(log,
+                 "assets prepared for other sensors, or other parameters of a group or tag: %zu (the first: %s); pictures mark places "
+                 "where their field may be wrong; run plantcast-prep again for a more accurate field",
+                 count, first);
+}
+
 /* Creates all assets. Checks and logs every asset, and returns false if one does not match its prepared file. */
 static bool create_assets(struct log *log, struct scene *scene, const struct manifest *manifest)
 {
@@ -333,14 +351,14 @@ static bool create_assets(struct log *log, struct scene *scene, const struct man
     qsort(uses.at, uses.count, sizeof(*uses.at), compare_assets);
     for (size_t i = 0; i < uses.count; i++) {
         const struct scene_asset *asset = &scene->assets[uses.at[i].asset];
-        if (!create_asset(log, scene, uses.at[i].asset)) {
+        if (!create_asset(log, scene, &uses.at[i])) {
             good = false;
             continue;
         }
-        asset->file->resolved_levels = uses.at[i].resolved_levels;
         grow_box(scene->bounds_min_m, scene->bounds_max_m, asset->bounds_min_m);
         grow_box(scene->bounds_min_m, scene->bounds_max_m, asset->bounds_max_m);
     }
+    say_cuts_differ(log, scene);
     scene->models_hash = XXH3_64bits(hashes.shown, scene->asset_count * sizeof(*hashes.shown));
     mem_free(hashes.files);
     mem_free(hashes.shown);

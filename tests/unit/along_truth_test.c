@@ -14,7 +14,7 @@
 #include "tests/support/prep_case.h"
 #include "value/quality.h"
 
-enum { SHAPES = 11, MOST_SENSORS = 16, MOST_POINTS = 600, POWERS = 3 };
+enum { SHAPES = 11, SOME_SHAPES = 3, MOST_SENSORS = 16, MOST_POINTS = 600, POWERS = 3 };
 /* MOST_BARE: share of the places that may be off by more than a step of colour and not marked */
 static const double STEP = 1 / 255.0, MOST_BARE = 0.002;
 static const double powers[POWERS] = { 1, 2, 4 };
@@ -424,7 +424,9 @@ static void show(const char *name, const struct along_tally *tally)
                   tally->drawn_marked, tally->drawn_bare, tally->worst_drawn / STEP);
 }
 
-static void compare_prepared(struct prep_case *c, const char *distance)
+/* distance: that of the plant file for which the shapes are prepared. reloaded: the plant file changes afterwards to distances along
+   surfaces and the largest power, and only the daemon reads it again; compares some of the shapes. */
+static void compare_prepared(struct prep_case *c, const char *distance, bool reloaded)
 {
     struct along_shape shapes[SHAPES] = { 0 };
     chance.state = sweep_seed();
@@ -432,6 +434,10 @@ static void compare_prepared(struct prep_case *c, const char *distance)
     struct plant *plant = prepare(shapes, c, distance);
     struct log *log = test_log();
     struct workers *workers = test_workers(1);
+    if (reloaded) {
+        plant->groups[0].distance = DISTANCE_GEODESIC;
+        plant->groups[0].power = powers[POWERS - 1];
+    }
     struct scene *scene = scene_create(log, plant, test_printf("%s/plant.prepared", c->folder));
     assert_non_null(scene);
     struct field *field = field_create(workers, scene);
@@ -439,7 +445,7 @@ static void compare_prepared(struct prep_case *c, const char *distance)
     struct along_place *places = mem_array(MOST_POINTS, sizeof(*places));
     double *distances_m = mem_array(MOST_POINTS * MOST_SENSORS, sizeof(*distances_m));
     struct along_tally all = { 0 };
-    for (int a = 0; a < SHAPES; a++) {
+    for (int a = 0; a < (reloaded ? SOME_SHAPES : SHAPES); a++) {
         for (size_t s = 0; s < shapes[a].sensor_count; s++)
             snapshot->readings[scene->assets[a].sensors[s].tag] = (struct reading){ .value = s % 2, .quality = QUALITY_GOOD };
         const int off_before = all.picks_off;
@@ -481,10 +487,15 @@ static void compare_prepared(struct prep_case *c, const char *distance)
 
 TEST_WITH(test_prepared_along_surfaces, prep_case_set_up, prep_case_tear_down)
 {
-    compare_prepared(*state, "geodesic");
+    compare_prepared(*state, "geodesic", false);
 }
 
 TEST_WITH(test_prepared_for_straight_lines, prep_case_set_up, prep_case_tear_down)
 {
-    compare_prepared(*state, "euclidean");
+    compare_prepared(*state, "euclidean", false);
+}
+
+TEST_WITH(test_reloaded_without_preparing, prep_case_set_up, prep_case_tear_down)
+{
+    compare_prepared(*state, "euclidean", true);
 }
