@@ -137,7 +137,7 @@ static void remember(struct known_markers *known, const struct frame *frame)
         memcpy(known->labels, frame->labels, frame->label_count * sizeof(*known->labels));
     known->marker_count = frame->marker_count;
     known->label_count = frame->label_count;
-    known->drawn_error = frame->drawn_error;
+    memcpy(known->drawn_error, frame->drawn_error, sizeof(known->drawn_error));
     known->any = true;
 }
 
@@ -194,8 +194,10 @@ char *marker_text(struct frame *frame, uint32_t seq, struct known_markers *known
         lists->arrows = lists->arrows ? lists->arrows : json_text(all_arrows(frame), ARROW_DIGITS);
         add_list(&text, "arrows", lists->arrows);
     }
-    if (frame->drawn_error != known->drawn_error)
-        text_add(&text, ",\"drawn_error\":%g", frame->drawn_error);
+    if (frame->drawn_error[0] != known->drawn_error[0])
+        text_add(&text, ",\"drawn_error\":%g", frame->drawn_error[0]);
+    if (frame->drawn_error[1] != known->drawn_error[1])
+        text_add(&text, ",\"drawn_error_right\":%g", frame->drawn_error[1]);
     remember(known, frame);
     if (text.length == head)
         text_finish(&text);

@@ -11,7 +11,7 @@ struct known_markers { /* sensor markers and labels already sent to a client; ze
     size_t marker_count, marker_capacity;
     struct frame_label *labels;
     size_t label_count, label_capacity;
-    double drawn_error;
+    double drawn_error[2]; /* by half of a split view */
 };
 
 /* JSON lists of the newest frame's markers and labels, built once for all its clients; zero-initialise; end with

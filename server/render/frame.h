@@ -59,8 +59,9 @@ struct frame {
     int64_t data_utc_ns;   /* UTC time in nanoseconds of the snapshot of readings that the frame shows */
     bool clock_unset;      /* true: the clock that gave data_utc_ns was not synchronised */
     int64_t oldest_age_ns; /* age in nanoseconds of the oldest reading that the frame uses; INT64_MAX: it uses none */
-    /* largest error of values in areas marked as uncertain, in engineering units, rounded up; 0: no area is marked */
-    double drawn_error;
+    /* [half of a split view, else 0]: largest error of values in areas marked as uncertain, in the half's unit, rounded up;
+       0: no area is marked */
+    double drawn_error[2];
     int64_t field_ns, render_ns, readback_ns; /* duration of each stage */
     /* time that the render thread spent on this frame, waiting for the GPU included; 0: not drawn by a render thread */
     int64_t turn_ns;

@@ -111,7 +111,7 @@ static struct frame *start_frame(struct renderer *renderer, const struct frame_p
     frame->view = *view;
     frame->data_utc_ns = plan->data_utc_ns;
     frame->oldest_age_ns = frame_oldest_age_ns(context);
-    frame->drawn_error = drawn_error_of(context);
+    frame->drawn_error[0] = drawn_error_of(context);
     frame->content = plan->content;
     frame->field_ns = plan->field_ns;
     frame->triangles = frame_triangles(context);

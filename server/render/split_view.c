@@ -114,7 +114,7 @@ static void add_meaning(struct frame *whole, const struct frame *part, int half)
         whole->oldest_age_ns = part->oldest_age_ns;
     else if (part->oldest_age_ns != INT64_MAX && part->oldest_age_ns > whole->oldest_age_ns)
         whole->oldest_age_ns = part->oldest_age_ns;
-    whole->drawn_error = fmax(whole->drawn_error, part->drawn_error);
+    whole->drawn_error[half] = part->drawn_error[0];
     if (!whole->baseline.id)
         whole->baseline = part->baseline;
     whole->field_ns += part->field_ns;

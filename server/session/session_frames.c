@@ -357,7 +357,6 @@ bool session_wants(const struct session *session, int64_t now_ns, struct frame_r
     /* sets read_ns to 0: readings of a past instant never change, so no later change can require another request */
     request->read_ns = request->view.at_us ? 0 : session->context->readings.changed_ns;
     request->view.camera_seq = session->view.camera_seq;
-    request->view.params_seq = session->view.params_seq;
     bool wanted = wants(session, now_ns, request);
     make_signed(session, request);
     request->depth = session_gets_depth(session) && !session->following.leader && !request->record;

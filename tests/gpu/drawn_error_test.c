@@ -585,7 +585,7 @@ TEST(test_equal_readings_mark_nothing)
         for (int i = 0; i < MANY; i++)
             toy_set(stand.snapshot, i, 50 + (i % 2 ? spread : 0), QUALITY_GOOD);
         struct frame *frame = stand_draw(&stand, &view);
-        assert_true(spread > 0 ? frame->drawn_error > 1 && frame->drawn_error <= 50 : frame->drawn_error == 0);
+        assert_true(spread > 0 ? frame->drawn_error[0] > 1 && frame->drawn_error[0] <= 50 : frame->drawn_error[0] == 0);
         frame_unref(&frame);
     }
     stand_finish(&stand);
@@ -607,7 +607,7 @@ TEST(test_lost_sensors_wild_readings_and_other_powers_are_measured)
         if (way == 2)
             toy_set(stand.snapshot, 2, 300, QUALITY_GOOD);
         struct frame *frame = stand_draw(&stand, &view);
-        assert_true(way == 0 ? frame->drawn_error == 0 : frame->drawn_error > 0);
+        assert_true(way == 0 ? frame->drawn_error[0] == 0 : frame->drawn_error[0] > 0);
         frame_unref(&frame);
     }
     stand_finish(&stand);
@@ -626,7 +626,7 @@ static double error_of_wild_readings(bool usual)
         for (int i = 0; i < MANY; i++)
             toy_set(stand.snapshot, i, i == 2 && wild ? 300 : 20 + 5 * i, QUALITY_GOOD);
         struct frame *frame = stand_draw(&stand, &view);
-        error = frame->drawn_error;
+        error = frame->drawn_error[0];
         frame_unref(&frame);
     }
     stand_finish(&stand);
@@ -680,7 +680,7 @@ TEST(test_without_memory_for_errors_all_is_marked)
     pick_at(&stand.toy->scene, stand.field, &view, stand.snapshot, WIDTH_PX / 2.0, HEIGHT_PX / 2.0, &pick);
     missing_elements = 0;
     assert_true(marked > 1000 && marked == shown);
-    assert_true(pick.asset == 0 && pick.drawn_error > 0 && frame->drawn_error >= 80);
+    assert_true(pick.asset == 0 && pick.drawn_error > 0 && frame->drawn_error[0] >= 80);
     frame_unref(&frame);
     stand_finish(&stand);
 }

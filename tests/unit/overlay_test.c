@@ -229,6 +229,40 @@ static int legend_differs_px(enum look look)
 }
 
 /* With the glossy look, values that a user reads from colours may be wrong. The legend must say so in two lines. */
+/* Returns the number of pixels in which a half's legend differs between two split frames whose halves have these errors. */
+static int legends_differ_px(int half, const double a[2], const double b[2])
+{
+    struct frame *frames[2];
+    for (int i = 0; i < 2; i++) {
+        struct view view;
+        view_default(&stand.toy->scene, WIDTH, HEIGHT, &view);
+        struct view right = view;
+        right.range_max *= 2; /* so that each half has a legend of its own */
+        view_split(&view, &right);
+        frames[i] = frame_create(NULL, WIDTH, HEIGHT);
+        frames[i]->view = view;
+        memset(frames[i]->bgrx, 255, (size_t)frames[i]->stride_bytes * HEIGHT);
+        memcpy(frames[i]->drawn_error, i ? b : a, sizeof(frames[i]->drawn_error));
+        overlay_draw(frames[i], &stand.toy->scene, stand.snapshot, NULL);
+    }
+    int count = 0;
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = half * WIDTH / 2; x < (half + 1) * WIDTH / 2; x++)
+            count += frames[0]->bgrx[y * frames[0]->stride_bytes + 4 * x] != frames[1]->bgrx[y * frames[1]->stride_bytes + 4 * x];
+    frame_unref(&frames[0]);
+    frame_unref(&frames[1]);
+    return count;
+}
+
+TEST(each_half_says_its_own_error)
+{
+    static const double none[2] = { 0, 0 }, left[2] = { 2, 0 }, right[2] = { 0, 2 };
+    assert_true(legends_differ_px(0, none, left) > 100);
+    assert_int_equal(legends_differ_px(1, none, left), 0);
+    assert_true(legends_differ_px(1, none, right) > 100);
+    assert_int_equal(legends_differ_px(0, none, right), 0);
+}
+
 TEST(the_legend_says_glossy)
 {
     assert_int_equal(legend_differs_px(LOOK_FLAT), 0);

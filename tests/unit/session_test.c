@@ -1130,6 +1130,9 @@ CASE(a_follower_is_shown_its_leaders_view)
     assert_int_equal(request.view.camera_seq, 1);
     following = hear(f);
     assert_string_equal(json_string_value(json_object_get(following, "group")), "pressure");
+    /* frame and message have the number of the leader's parameters, by which the client tells them from earlier ones */
+    assert_int_equal(request.view.params_seq, 5);
+    assert_int_equal(json_integer_value(json_object_get(following, "params_seq")), 5);
     leader->delivery.pacer.ladder.made.index = 2; /* a loaded server: both get the view in the same smaller size */
     session_choose_step(f->session);
     session_on_leader(f->session, f->now_ns);

@@ -73,7 +73,8 @@ test('after a reload of the plant, the legend has the new limits and colours', (
         const emit = (name) => (listeners.get(name) ?? []).forEach((f) => f());
         const modelOf = (H, colour) => ({ tags: [], group: () => ({ id: 'T', min: 0, max: 10, limits: { H } }),
             colormap: () => ({ rgb: [colour, 0, 0], safe: true }) });
-        const session = { on, model: modelOf(8, 1), shown: { group: 'T', show: 'value' }, rangeOf: () => [0, 10] };
+        const session = { on, model: modelOf(8, 1), shown: { group: 'T', show: 'value' }, rangeOf: () => [0, 10],
+            drawnErrors: [0, 0] };
         const legend = new Legend({ session, element: { replaceChildren: (_, scale) => drawn.push(scale), append() {} },
             paramsOf: (params) => params, lying: { matches: false, addEventListener() {} } });
         Object.assign(legend, { heading: () => null, keys: () => null, scale: ({ map }, _, { H }) => [H, map.rgb[0]] });

@@ -553,6 +553,46 @@ test('a leader who has left is still named', () => {
     assert.deepEqual([session.following.who, session.following.gone], ['kim', true]);
 });
 
+test('the halves of a split view have errors of their own, which a reconnect forgets', () => {
+    const { session, socket } = greeted(WANTED), heard = [];
+    session.on('shown', () => heard.push(session.drawnErrors.join()));
+    for (const fields of [{ drawn_error: 2, drawn_error_right: 0.05 }, { drawn_error_right: 0.1 }, {}, { drawn_error: 0 }])
+        socket.say({ type: 'markers', seq: 1, ...fields });
+    assert.deepEqual(heard, ['2,0.05', '2,0.1', '0,0.1']);
+    session.hello(['camera', 'params']);
+    assert.deepEqual(session.drawnErrors, [0, 0]);
+});
+
+test('a follower\'s picture keeps its parameters until a picture with the leader\'s new ones arrives', () => {
+    const { session, socket } = greeted(WANTED), following = vector('server/following.json');
+    const say = (seq, group) => socket.say({ ...following, params_seq: seq, group });
+    const draw = (paramsSeq) => session.drawn({ seq: 1, cameraSeq: 0, paramsSeq, camera: session.camera }, 1);
+    const shown = () => session.shown.group;
+    session.setParams({ group: 'pressure' });
+    draw(2);
+    session.follow(12);
+    say(2, 'temperature'); // the leader's number equals this session's own one
+    assert.deepEqual([session.params.group, shown()], ['temperature', 'pressure'], 'the own picture is still on the screen');
+    draw(2);
+    assert.equal(shown(), 'temperature');
+    say(8, 'pressure');
+    say(9, 'humidity');
+    assert.equal(shown(), 'temperature');
+    draw(8);
+    assert.equal(shown(), 'pressure');
+    draw(9);
+    assert.equal(shown(), 'humidity');
+    session.follow(null);
+    socket.say({ ...vector('server/following-nobody.json'), params_seq: 2, group: 'pressure' });
+    assert.equal(shown(), 'humidity', 'the leader\'s picture is still on the screen');
+    draw(2);
+    assert.equal(shown(), 'pressure');
+    for (let seq = 2; seq < 9; seq++)
+        session.setParams({ group: 'temperature' });
+    draw(9);
+    assert.equal(shown(), 'temperature', 'the leader\'s numbers are forgotten');
+});
+
 test('a user who begins to lead no longer follows; the shown camera stays until another is sent', () => {
     const eyes = (x) => ({ camera: { eye: [x, 8, 7], target: [1, 1, 1], up: [0, 0, 1], fov: 40 }, waitUs: 0, fieldUs: 0, renderUs: 0,
         encodeUs: 0, sentTimeUs: 0 });

@@ -29,10 +29,10 @@ const does = (name) => (...given) => modules.use('commands', (commands) => comma
 new Toolbar({ session, does });
 const rightOf = (params) => params.split && { ...params, ...params.split };
 // Returns true if both halves of a split view have the same legend, so that one legend is enough.
-const isShared = (params, right) => right && legend.contents(params) === legend.contents(right);
+const isShared = (params, right) => right && legend.contents(params) === legend.contents(right, 1);
 const legend = new Legend({ session, element: byId('legend'), lying: page.lying,
     paramsOf: (params) => !isShared(params, rightOf(params)) && params });
-new Legend({ session, element: byId('legend-right'), lying: page.lying, paramsOf: rightOf });
+new Legend({ session, element: byId('legend-right'), lying: page.lying, paramsOf: rightOf, half: 1 });
 const overlay = new Overlay({ canvas: byId('overlay'), viewport, session, selection });
 overlay.unit = page.unit;
 overlay.onRings = () => modules.prepare('callouts');

@@ -56,6 +56,8 @@ export class Session {
         this.cameraNews = false; // true: the camera has changed but has not been sent yet
         this.cameraInput = null; // time of the user's input that set the camera; the latency of its picture is measured from that time
         this.markers = new Map();
+        // largest errors in uncertain places, by half of a split view (message `markers`)
+        this.drawnErrors = [0, 0];
         // { us, at }: the server's time, and the page's time when it arrived
         this.serverTime = null;
         // time of the server's last message: if messages stop, the picture's age counts from here
@@ -181,6 +183,7 @@ export class Session {
         this.greetedSize = this.size;
         this.unsent = {};
         this.markers.clear();
+        this.drawnErrors = [0, 0];
         this.latency.clear();
         this.cameraSeq = this.paramsSeq = 0;
         this.asked = new Map([[-1, shown]]);
@@ -259,13 +262,19 @@ export class Session {
             this.follow(null);
         const own = change.group && change.group !== this.params.group ? pick(this.model?.group(change.group) ?? {}, GROUPS_OWN) : {};
         const split = change.split && { split: { ...this.params.split, ...change.split } };
-        this.asked.set(this.paramsSeq, this.params);
+        this.remember(this.paramsSeq, this.params);
         this.params = { ...this.params, ...own, ...change, ...split, ...this.mergedSensors(change.sensors) };
         if (this.welcomed)
             this.connection.send({ type: 'params', seq: ++this.paramsSeq, ...change });
         else
             Object.assign(this.unsent, change);
         this.emit('params');
+    }
+
+    // Stores which view parameters pictures with this number show.
+    remember(seq, params) {
+        this.asked.delete(seq); // so that the number becomes the newest
+        this.asked.set(seq, params);
     }
 
     // Merges changed factors of single sensors into the current ones. null for a sensor removes its factors; null as a whole removes all.
@@ -327,7 +336,11 @@ export class Session {
         if (this.lent)
             this.camera = asAsked(frame.camera);
         this.picture = { ...frame, payload: null, bytes: frame.payload?.length ?? 0, at: now };
-        this.asked.forEach((params, seq) => seq < frame.paramsSeq && this.asked.delete(seq));
+        for (const seq of this.asked.keys()) { // in the order in which the parameters were shown or asked for
+            if (seq === frame.paramsSeq)
+                break;
+            this.asked.delete(seq);
+        }
         if (this.shown !== shown)
             this.emit('shown');
         this.freshen();
@@ -515,19 +528,28 @@ const HANDLERS = {
         }
         known.isolines = message.isolines ?? newest.isolines;
         known.arrows = message.arrows ?? newest.arrows;
-        if ('drawn_error' in message)
-            this.emit('shown', this.drawnError = message.drawn_error);
+        const { drawn_error: left, drawn_error_right: right } = message;
+        if (left !== undefined || right !== undefined)
+            this.emit('shown', this.drawnErrors = [left ?? this.drawnErrors[0], right ?? this.drawnErrors[1]]);
         this.markers.set(message.seq, known);
     },
 
-    following({ session, who, width, height, gone = false, ...shown }) {
+    // From `params_seq` on, pictures show the parameters in this message. Numbers of the followed session may equal those of this
+    // session, so the picture on the screen, which keeps its parameters, gets a number that is never used.
+    following({ session, who, width, height, gone = false, params_seq: seq, ...shown }) {
+        const { shown: before, picture } = this;
         this.lent ||= session ?? this.leader;
         // If the followed session has ended, the message does not name its user: keeps the name known so far.
         const name = who ?? (this.following?.session === session ? this.following.who : undefined);
         this.following = session === null ? null : { session, who: name, width, height, ...(gone ? { gone } : {}) };
         this.leader = session;
         this.confirmed = this.params = pick(shown, SAID);
-        this.asked.clear();
+        if (picture) {
+            this.remember(-1, before);
+            this.remember(picture.paramsSeq, before);
+            picture.paramsSeq = -1;
+        }
+        this.remember(seq, this.params);
         this.emit('params');
         this.emit('following');
     },

@@ -59,24 +59,12 @@ export class TileSession extends Session {
             this.present(message);
         else if (message.type === 'tiles')
             this.tellTiles(message);
-        else if (message.type === 'following')
-            this.follow(message);
         else
             super.heard(message);
         if (message.type === 'pong')
             this.takeTime(message);
         if (message.type === 'markers' && message.markers)
             this.markerRows.push({ seq: message.seq, rows: message.markers });
-    }
-
-    // Takes over view parameters from the leading display. The picture on the screen keeps its own parameters until a picture with the new
-    // ones arrives.
-    follow(message) {
-        const { shown, picture } = this;
-        super.heard(message);
-        if (picture)
-            this.asked.set(picture.paramsSeq, shown);
-        this.asked.set(message.params_seq, this.params);
     }
 
     tellTiles(message) {

@@ -167,8 +167,10 @@ static void say_values(const struct frame *frame, struct text *out)
         text_add(out, "none");
     else
         text_add(out, "%lld", (long long)(frame->oldest_age_ns / 1000000));
-    if (frame->drawn_error > 0)
-        text_add(out, ", drawn_error=%g", frame->drawn_error);
+    if (frame->drawn_error[0] > 0)
+        text_add(out, ", drawn_error=%g", frame->drawn_error[0]);
+    if (frame->drawn_error[1] > 0)
+        text_add(out, ", drawn_error_right=%g", frame->drawn_error[1]);
 }
 
 /* Adds a header with the plant's name, if the client may know the name and the name has at most NAME_BYTES. */

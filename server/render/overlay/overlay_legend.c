@@ -164,9 +164,9 @@ static void write_drawn_error(const struct pen *pen, struct legend *legend)
 {
     const char *unit = view_is_operator(&pen->view) ? "" : view_unit(pen->scene->plant, &pen->view);
     char number[80];
-    if (!(pen->frame->drawn_error > 0))
+    if (!(pen->frame->drawn_error[pen->half] > 0))
         return;
-    snprintf(number, sizeof(number), "%g %.60s", pen->frame->drawn_error, unit);
+    snprintf(number, sizeof(number), "%g %.60s", pen->frame->drawn_error[pen->half], unit);
     pen_say(pen, WORD_DRAWN_ERROR_2, number, NULL, legend->drawn_error, sizeof(legend->drawn_error));
     add_note(legend, pen_word(pen, WORD_DRAWN_ERROR));
     add_note(legend, legend->drawn_error);

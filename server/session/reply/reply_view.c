@@ -145,8 +145,7 @@ char *reply_following_text(const struct session *session)
         json_object_set_new(object, "who", string(session->following.leader->identity.holder.name));
     if (session->following.left)
         json_object_set_new(object, "gone", json_true());
-    if (session_is_tile(session))
-        json_object_set_new(object, "params_seq", json_integer(view->params_seq));
+    json_object_set_new(object, "params_seq", json_integer(view->params_seq));
     reply_set_params(object, session->context, view, session_is_open(session));
     return json_text(object, DIGITS);
 }

@@ -200,7 +200,7 @@ test('desktop: two parameter sets side by side, each with legend and markers', o
     await shoot(page, 'operator');
     const notes = await page.evaluate(() => {
         const { legend, session } = globalThis.plantcast;
-        session.drawnError = 2;
+        session.drawnErrors = [2, 2];
         legend.show(true);
         return legend.element.textContent;
     });

@@ -85,9 +85,9 @@ export function titleOf({ model }, params) {
 
 export class Legend {
     // paramsOf: returns the picture parameters of the half of a split view (or the whole view) that this legend explains, or
-    // null if the legend stays empty.
-    constructor({ session, element, paramsOf, lying = phone }) {
-        Object.assign(this, { session, element, paramsOf, lying });
+    // null if the legend stays empty. half: 1 for the right half, else 0.
+    constructor({ session, element, paramsOf, half = 0, lying = phone }) {
+        Object.assign(this, { session, element, paramsOf, half, lying });
         this.lying.addEventListener('change', () => this.show(true));
         this.shown = '';
         this.long = 240; // length of the legend's colour bar in CSS pixels
@@ -114,10 +114,11 @@ export class Legend {
     }
 
     // Returns a key made of everything that affects the legend's look. The legend is redrawn only if the key changes.
-    contents(params) {
+    contents(params, half = this.half) {
         const { group, show, colormap, ramp_interval, scale, breaks, isolines, look, unit } = params;
         return JSON.stringify([group, show, this.title(params), colormap, ramp_interval, this.session.rangeOf(params), scale,
-            breaks, isolines, look, unit, uncertainIn(params), this.unproven(params), this.assumed(params), this.session.drawnError]);
+            breaks, isolines, look, unit, uncertainIn(params), this.unproven(params), this.assumed(params),
+            this.session.drawnErrors[half]]);
     }
 
     show(again = false) {
@@ -149,7 +150,7 @@ export class Legend {
     }
 
     notes(params, map, isOperator) {
-        const { look, scale } = params, off = this.session.drawnError;
+        const { look, scale } = params, off = this.session.drawnErrors[this.half];
         return [
             // largest possible error of the interpolated values where the picture marks them as uncertain, in the unit of the
             // legend's title; left out in the operator's view (values relative to alarm limits), which has no unit
