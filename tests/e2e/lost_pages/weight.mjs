@@ -9,6 +9,7 @@ import { startAlarmed } from '../support/panels.mjs';
 import { promise } from '../support/promise.mjs';
 import { sweep } from '../support/sweep.mjs';
 import { notBuilt } from '../support/tiny_plant.mjs';
+import { becomes } from '../support/until.mjs';
 
 const options = { skip: notBuilt(), timeout: 200000 };
 // limits of the first load in compressed bytes: desk: with a mouse; touch: the same plus the code for touch; warp: the code
@@ -78,6 +79,13 @@ for (const [name, language, screen] of PAGES) {
         assert.ok(sum(files) <= most, files.sort((a, b) => b[1] - a[1]).map((file) => file.join(' ')).join('\n'));
         const hand = files.filter(([path]) => HAND.test(path));
         assert.equal(hand.length, screen === PHONE ? 3 : 0);
+        if (screen !== PHONE) {
+            await page.mouse.move(400, 300);
+            await becomes(async () => {
+                hand.splice(0, hand.length, ...(await browser.fetched()).filter(([path]) => HAND.test(path)));
+                return hand.length;
+            }, 3, 'a movement of the mouse loads the code that moves the picture', 30);
+        }
         const warp = hand.filter(([path]) => path.includes('warp'));
         t.diagnostic(`${kB(sum(hand))} follow a hand, ${kB(sum(warp))} of them move the picture`);
         assert.ok(sum(warp) <= MOST_BYTES.warp, warp.join('\n'));
