@@ -3,7 +3,7 @@
 // the screen shows its point, not where the page's newest camera would show it.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { arrive, openPage, settle, shoot, TABLET, waitForPicture, withPage } from '../support/browser.mjs';
+import { arrive, keepMediaQueries, openPage, pixelRatioOf, settle, shoot, TABLET, waitForPicture, withPage } from '../support/browser.mjs';
 import { promise } from '../support/promise.mjs';
 import { Relay, relayMissing } from '../support/relay.mjs';
 import { setUp } from '../support/set_up.mjs';
@@ -17,7 +17,7 @@ const LEAST_VIEWS = 10, LEAST_RUN_PX = 12, FRAME_MS = 1000 / 60;
 // MARK_PX: maximum distance of a marker from its point; PICTURE_PX: maximum distance (median of the frames) between the edges of the
 // coloured area and those of the box, both in page pixels. Encoded edges are blurred, more so in moving pictures, which on a loaded
 // machine have fewer and larger pixels: PICTURE_PX allows for two page pixels per picture pixel and is scaled for larger ones.
-const MARK_PX = 1, PICTURE_PX = 5;
+const MARK_PX = 1, PICTURE_PX = 5, RING_PX = 12; // RING_PX: distance of a leader line from its marker, as in app/viewport/overlay.js
 // WARPED_PX: distance beyond the box, in page pixels, up to which coloured pixels are normal: JPEG codes colour in blocks of 16
 // pixels, which may extend beyond the box in a few rows. A wrong warp, which stretches across a step in depth, would colour
 // whole areas farther away.
@@ -220,9 +220,28 @@ const watchWarped = (page) => page.evaluate((LEAST_RUN_PX) => {
         return pixelsOf(canvas, canvas.width, canvas.height)
             .filter((pixel, i) => pixel !== warpedPixels[i] && pixel !== server[i] && pixel !== 0).length;
     };
+    // Gives the first sensor an alarm ring, and its label a leader line. Records where the overlay draws them: the ring's centre,
+    // the begin of the leader line, and the label's top left corner with its slot.
+    const { drawAlarm, drawLeader, place, context } = overlay, { model } = session;
+    const alarm = { priority: 1, kind: 'HH', state: 'active', waiting: false };
+    let marks = { rings: [], leaders: [], labels: [] };
+    model.alarms.gravest = (index) => (index === 0 ? alarm : null);
+    overlay.place = (...given) => new Map([...place.apply(overlay, given)].map(([id, at]) => [id, { ...at, leads: true }]));
+    overlay.drawAlarm = (ring) => {
+        const { a: ratio, e: x, f: y } = context.getTransform();
+        marks.rings.push([x / ratio, y / ratio]);
+        drawAlarm.call(overlay, ring);
+    };
+    overlay.drawLeader = (label, at) => {
+        context.moveTo = (...from) => marks.leaders.push(from);
+        drawLeader.call(overlay, label, at);
+        delete context.moveTo;
+        marks.labels.push({ slot: at.slot, at: [at.left, at.top] });
+    };
     globalThis.warped = [];
     globalThis.fades = [];
     viewport.onDrawn = (isNew, isWarped) => {
+        marks = { rings: [], leaders: [], labels: [] };
         onDrawn(isNew, isWarped);
         if (!isWarped && viewport.warp?.isShown && session.picture.cameraSeq === session.cameraSeq)
             globalThis.fades.push(countMixed(viewport.warp.canvas));
@@ -238,7 +257,7 @@ const watchWarped = (page) => page.evaluate((LEAST_RUN_PX) => {
         globalThis.warped.push({ frames: isFirst ? frame - asked.frame : 0, isNewest: session.picture.camera === session.camera,
             isAhead: session.picture.cameraSeq !== session.cameraSeq, runs: colouredIn(viewport.warp.canvas), camera: session.camera,
             markers: overlay.markers.filter(({ occluded }) => !occluded)
-                .map((marker) => ({ ...overlay.placeOf(marker), at: marker.tag.position })) });
+                .map((marker) => ({ ...overlay.placeOf(marker), half: marker.half, at: marker.tag.position })), ...marks });
     };
 }, LEAST_RUN_PX);
 
@@ -292,6 +311,10 @@ const asGpu = () => {
     };
 };
 
+// Returns whether the coloured pixels of a warped picture are as high as the box, whatever the picture's number of pixels: a page on
+// a loaded machine draws fewer.
+const isBoxSeen = ({ runs }) => runs.length > 0 && runs.at(-1)[2] - runs[0][2] > 100;
+
 async function loseContext(page) {
     await page.evaluate(() => {
         globalThis.context = globalThis.plantcast.viewport.warp.painter.gl.getExtension('WEBGL_lose_context');
@@ -305,21 +328,32 @@ async function loseContext(page) {
     await page.evaluate(() => { globalThis.warped = []; });
     await page.mouse.wheel(0, 120);
     await page.waitForFunction(() => globalThis.warped.length > 0);
-    assert.ok(await page.evaluate(() => globalThis.warped.every(({ runs }) => runs.length > 50)), 'the box is visible again');
+    assert.ok((await page.evaluate(() => globalThis.warped)).every(isBoxSeen), 'the box is visible again');
     await settle(page);
 }
 
-// Returns how far markers lie from their places in warped pictures, in page pixels, and the largest share of colours beyond the box.
-async function faultsOf(page, seen) {
-    const { width, height } = await page.locator('#viewport').boundingBox();
+// Returns how far markers (and the first sensor's ring, leader line and label) lie from their places in warped pictures, in page
+// pixels, and the largest share of colours beyond the box. parts: 2 for a split view, whose colours are not checked.
+async function faultsOf(page, seen, parts = 1) {
+    const { width: wide, height } = await page.locator('#viewport').boundingBox(), width = wide / parts;
     const { min, max } = await page.evaluate(() => globalThis.plantcast.session.model.asset('E-101').bounds);
+    const first = await page.evaluate(() => globalThis.plantcast.session.model.tags[0].position), slots = new Map();
     const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((n) => [0, 1, 2].map((i) => (n & (1 << i) ? max[i] : min[i])));
     let off = 0, beyond = 0;
-    for (const { camera, runs, markers: marks } of seen) {
-        const project = projector(camera, width, height), places = corners.map(project);
-        for (const { at, x: left, y: top } of marks)
-            off = Math.max(off, Math.hypot(...project(at).slice(0, 2).map((v, i) => v - [left, top][i])));
-        beyond = Math.max(beyond, partBeyond(runs, places));
+    const away = ([x, y], [left, top]) => Math.hypot(x - left, y - top);
+    for (const { camera, runs, markers: marks, rings, leaders, labels } of seen) {
+        const project = projector(camera, width, height), places = corners.map(project), [x, y] = project(first);
+        for (const { at, half, x: left, y: top } of marks)
+            off = Math.max(off, away(project(at), [left - half * width, top]));
+        if (parts === 1) {
+            assert.deepEqual([rings.length, leaders.length, labels.length], [1, 1, 1]);
+            const [{ slot, at: [left, top] }] = labels, offset = [left - x, top - y];
+            if (!slots.has(slot))
+                slots.set(slot, offset);
+            // a leader line begins at the edge of the ring; a label lies at a fixed distance from its marker
+            off = Math.max(off, away(rings[0], [x, y]), Math.abs(away(leaders[0], [x, y]) - RING_PX), away(offset, slots.get(slot)));
+        }
+        beyond = parts === 1 ? Math.max(beyond, partBeyond(runs, places)) : 0;
     }
     return { off, beyond };
 }
@@ -385,7 +419,7 @@ const followsHand = (painter, ...script) => async (t) => {
         const frames = seen.map((one) => one.frames).sort((a, b) => a - b);
         assert.ok(frames[Math.floor(frames.length / 2)] <= 1, `frames from input to picture: ${frames}`);
         promise(t, 'from hand to picture, the latest', FRAME_MS * frames.at(-1), 2 * FRAME_MS);
-        assert.ok(seen.every(({ runs }) => runs.length > 50), 'the box is visible');
+        assert.ok(seen.every(isBoxSeen), 'the box is visible');
         assert.ok(off <= MARK_PX, `a marker ${off} px off`);
         assert.ok(beyond <= WARPED_SHARE, `share of colours beyond the box: ${beyond}`);
         await settle(page);
@@ -414,18 +448,27 @@ const name = 'the picture follows the pointer before the server answers, and und
 test(`${name}, by WebGL`, options, followsHand('GlPainter', asGpu));
 test(`${name}, by the processor`, options, followsHand('CpuPainter'));
 
-test('after the window changes its size, warped pictures are true again', options, async (t) => {
+test('after changes of the window\'s size and pixel ratio, and in a split view, warped pictures are true again', options, async (t) => {
     const slow = await Relay.open(plant.port, { bytesPerS: 4e6, delayMs: 150 });
     t.after(() => slow.close());
-    const { page, errors, close } = await openPage(`http://127.0.0.1:${slow.port}/?codec=jpeg`, { viewport: { width: 900, height: 600 } });
+    const { page, errors, close } = await openPage(`http://127.0.0.1:${slow.port}/?codec=jpeg`, { viewport: { width: 900, height: 600 } },
+        keepMediaQueries);
     try {
         await look(page);
         const frame = () => page.evaluate(() => new Promise(requestAnimationFrame));
         await page.mouse.move(...await middle(page));
         await page.waitForFunction(() => globalThis.plantcast.viewport.warp);
         await watchWarped(page);
-        for (const [width, height] of [[980, 500], [900, 700]]) {
-            await page.setViewportSize({ width, height });
+        const setRatio = await pixelRatioOf(page), split = () => globalThis.plantcast.session.setParams({ split: { colormap: 'viridis' } });
+        const changes = [['980x500', () => page.setViewportSize({ width: 980, height: 500 })],
+            ['900x500', () => page.setViewportSize({ width: 900, height: 500 })],
+            ['pixel ratio 2', () => setRatio(2)], ['split view', () => page.evaluate(split), 2]];
+        for (const [change, make, parts = 1] of changes) {
+            await make();
+            await page.waitForFunction((count) => {
+                const { viewport: { width }, session: { picture } } = globalThis.plantcast;
+                return Math.abs(picture.fullWidth - width * devicePixelRatio) <= 2 && picture.depth?.messages.length === count;
+            }, parts);
             await arrive(page);
             await page.waitForFunction(() => globalThis.plantcast.viewport.warp.grids.at(-1)?.parts &&
                 !globalThis.plantcast.viewport.warp.isShown);
@@ -438,9 +481,11 @@ test('after the window changes its size, warped pictures are true again', option
                 await frame();
             }
             await page.mouse.up();
-            const seen = await page.evaluate(() => globalThis.warped), { off, beyond } = await faultsOf(page, seen);
-            t.diagnostic(`${width}x${height}: ${seen.length} drawings, markers ${off.toFixed(2)} px off`);
-            assert.ok(seen.some(({ markers }) => markers.length > 0), 'no marker was drawn');
+            const seen = await page.evaluate(() => globalThis.warped), { off, beyond } = await faultsOf(page, seen, parts);
+            t.diagnostic(`${change}: ${seen.length} drawings, markers ${off.toFixed(2)} px off`);
+            for (let half = 0; half < parts; half++)
+                assert.ok(seen.some(({ markers }) => markers.some((marker) => marker.half === half)), 'no marker was drawn');
+            assert.equal(await page.evaluate(() => globalThis.plantcast.viewport.warp.source.parts.length), parts);
             assert.ok(seen.length > 0 && off <= MARK_PX && beyond <= WARPED_SHARE, JSON.stringify({ off, beyond }));
         }
         assert.deepEqual(errors, []);
