@@ -3,7 +3,8 @@
 // a simulated slow link. Prints one JSON object per measured quantity. Arguments: WIDTHxHEIGHT, CODEC (auto), ROUND_TRIP_MS
 // (0), BYTES_PER_S of the link (0: no limit). Without arguments, measures each link of LINKS in turn and prints a table that
 // compares the results with their goals. --browser: chromium, firefox or webkit. --throttle: factor by which Chromium slows the
-// page's main thread down, like a phone. --ratio: device pixels per CSS pixel.
+// page's main thread down, like a phone. --ratio: device pixels per CSS pixel. --motion: what the hand does: orbit, pan or zoom
+// (pan and zoom only in Chromium).
 import { loadavg } from 'node:os';
 import { setTimeout as sleep } from 'node:timers/promises';
 import { parseArgs } from 'node:util';
@@ -14,7 +15,7 @@ import { Relay, relayMissing } from '../e2e/support/relay.mjs';
 
 const { values: OPTIONS, positionals: GIVEN } = parseArgs({ allowPositionals: true, options: {
     browser: { type: 'string', default: 'chromium' }, throttle: { type: 'string', default: '1' },
-    ratio: { type: 'string', default: '1' } } });
+    ratio: { type: 'string', default: '1' }, motion: { type: 'string', default: 'orbit' } } });
 // Links and their goals: size, codec, round trip in ms, bytes per second (0: no limit); largest time from a pointer event to
 // the first changed pixel (95th percentile, ms), and smallest number of picture updates per second while dragging.
 const LINKS = [['1280x720', 'jpeg', 0, 0, 34, 55], ['1280x720', 'jpeg', 50, 0, 34, 55], ['1280x720', 'jpeg', 200, 0, 34, 55],
@@ -22,6 +23,9 @@ const LINKS = [['1280x720', 'jpeg', 0, 0, 34, 55], ['1280x720', 'jpeg', 50, 0, 3
     ['1920x1080', 'jpeg', 200, 0, 34, 30]];
 const BROWSER_MS = 25; // goal: largest processor time (ms) that the browser may use per picture update
 let width, height, name, results; // data of the link being measured: size of the picture in pixels, name in the printed rows, results
+if (!['orbit', 'pan', 'zoom'].includes(OPTIONS.motion) || (OPTIONS.motion !== 'orbit' && OPTIONS.browser !== 'chromium'))
+    throw new Error(`--motion ${OPTIONS.motion}: write orbit, or in Chromium pan or zoom`);
+const isZoom = OPTIONS.motion === 'zoom', BUTTON = OPTIONS.motion === 'pan' ? 'right' : 'left'; // the right button pans
 const SECONDS = Number(process.env.SECONDS) || 5, TRIES = Number(process.env.TRIES) || 20, HZ = 60, CALM_MS = 400;
 function say(what, value, unit, more = {}) {
     console.log(JSON.stringify({ name: `${name}_${what}`, value, unit, ...more }));
@@ -42,7 +46,8 @@ function record() {
             requestAnimationFrame(count);
     };
     hand.start = () => requestAnimationFrame(count);
-    addEventListener('pointermove', ({ timeStamp: at }) => hand.events.push({ at, count: hand.count }), { capture: true, passive: true });
+    for (const type of ['pointermove', 'wheel'])
+        addEventListener(type, ({ timeStamp: at }) => hand.events.push({ at, count: hand.count }), { capture: true, passive: true });
     session.drawn = (frame, ...rest) => {
         drawn.call(session, frame, ...rest);
         hand.frames.push({ at: performance.now(), last: frame.cameraSeq === session.cameraSeq && !session.cameraNews });
@@ -82,12 +87,14 @@ async function rest(page) {
     }
 }
 
-// Moves the mouse, with its button pressed, in a circle for that many seconds, without waiting for the page.
+// Moves the mouse, with its button pressed, in a circle for that many seconds, without waiting for the page. To zoom, turns the
+// wheel to and fro instead.
 async function circle(page, seconds) {
     const began = performance.now(), count = seconds * HZ, reach = Math.min(150, width / 3);
     for (let n = 1, last; n <= count; n++) {
         const angle = 2 * Math.PI * n / (3 * HZ);
-        last = page.pointer('mouseMoved', width / 2 + reach * Math.sin(angle), height / 2 + 100 * (1 - Math.cos(angle)) / 2);
+        last = isZoom ? page.wheel(width / 2, height / 2, 10 * Math.cos(angle))
+            : page.pointer('mouseMoved', width / 2 + reach * Math.sin(angle), height / 2 + 100 * (1 - Math.cos(angle)) / 2, BUTTON);
         await sleep(Math.max(0, began + n * 1000 / HZ - performance.now()));
         if (n === count)
             await last;
@@ -106,14 +113,16 @@ async function measure(page, daemonPid) {
     await page.evaluate(record);
     await page.pointer('mouseMoved', width / 2, height / 2);
     await clear(page, true);
-    await page.pointer('mousePressed', width / 2, height / 2);
+    if (!isZoom)
+        await page.pointer('mousePressed', width / 2, height / 2, BUTTON);
     await circle(page, 2); // unmeasured drag, so that the page has loaded everything that it loads lazily at the first drag
     const how = await page.evaluate(() => globalThis.plantcast.viewport.warp?.painter.constructor.name ?? null);
     const firsts = [], counts = [];
     for (let n = 0; n < TRIES; n++) {
         await rest(page);
         await clear(page, true);
-        await page.pointer('mouseMoved', width / 2 + 20 * (1 + n % 2), height / 2 + n);
+        await (isZoom ? page.wheel(width / 2, height / 2, n % 2 ? 60 : -60)
+            : page.pointer('mouseMoved', width / 2 + 20 * (1 + n % 2), height / 2 + n, BUTTON));
         await page.wait(() => globalThis.hand.changes.some(({ at }) => at > globalThis.hand.events[0].at));
         const { events: [event], changes } = await look(page), change = changes.find(({ at }) => at > event.at);
         firsts.push(change.at - event.at);
@@ -142,13 +151,15 @@ async function measure(page, daemonPid) {
     say('cpu_per_picture_ms', round(cpu / pictures), 'ms of a processor');
     say('cpu_per_update_ms', round(cpu / drawn), 'ms of a processor');
     say('cores', round(cpu / seconds / 100) / 10, 'cores', { server: round((cpuMs(daemonPid) - served) / seconds / 100) / 10 });
-    await page.pointer('mouseReleased', width / 2, height / 2);
+    if (!isZoom)
+        await page.pointer('mouseReleased', width / 2, height / 2, BUTTON);
     if (process.env.SHOT)
         await page.shoot(process.env.SHOT);
 }
 
 async function run(size, codec = 'auto', roundTripMs = 0, bytesPerS = 0) {
-    name = `hand_${OPTIONS.browser}_${size}_${codec}_${roundTripMs}ms${Number(bytesPerS) === 0 ? '' : `_${bytesPerS}Bps`}`;
+    const motion = OPTIONS.motion === 'orbit' ? '' : `_${OPTIONS.motion}`, limit = Number(bytesPerS) === 0 ? '' : `_${bytesPerS}Bps`;
+    name = `hand_${OPTIONS.browser}${motion}_${size}_${codec}_${roundTripMs}ms${limit}`;
     results = {};
     [width, height] = size.split('x').map(Number);
     const why = missing() ?? relayMissing() ?? missingBrowser(OPTIONS.browser);

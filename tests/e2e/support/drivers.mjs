@@ -70,10 +70,16 @@ class ChromiumPage extends Page {
         return JSON.parse(await this.page.evaluate(`(${called(f, arg)})()`));
     }
 
-    pointer(type, x, y) {
-        this.buttons = { mousePressed: 1, mouseReleased: 0 }[type] ?? this.buttons ?? 0;
+    pointer(type, x, y, button = 'left') {
+        this.buttons = { mousePressed: button === 'left' ? 1 : 2, mouseReleased: 0 }[type] ?? this.buttons ?? 0;
         return this.client.send('Input.dispatchMouseEvent',
-            { type, x: Math.round(x), y: Math.round(y), button: 'left', buttons: this.buttons, clickCount: 1 });
+            { type, x: Math.round(x), y: Math.round(y), button, buttons: this.buttons, clickCount: 1 });
+    }
+
+    // Turns the mouse wheel. by: distance in pixels; above 0: towards the user.
+    wheel(x, y, by) {
+        return this.client.send('Input.dispatchMouseEvent',
+            { type: 'mouseWheel', x: Math.round(x), y: Math.round(y), deltaX: 0, deltaY: by });
     }
 
     async press(keys) {
