@@ -258,8 +258,8 @@ static char *manifest_text(struct log *log, const char *folder, const struct fol
             json_array_append_new(placement, json_real(entries[i].placement[n]));
         for (size_t t = 0; t < entries[i].tag_count; t++)
             json_array_append_new(tags, json_string(entries[i].tags[t]));
-        json_t *asset = json_pack("{s:s, s:s, s:s, s:s, s:s, s:s, s:o, s:o}", "id", entries[i].id, "file", file, "key", key, "recipe", recipe,
-                                  "model", model, "cuts", cuts, "placement", placement, "tags", tags);
+        json_t *asset = json_pack("{s:s, s:s, s:s, s:s, s:s, s:s, s:o, s:o}", "id", entries[i].id, "file", file, "key", key, "recipe",
+                                  recipe, "model", model, "cuts", cuts, "placement", placement, "tags", tags);
         const char *missing = entries[i].missing;
         if (missing) {
             json_t *why = json_string(missing);
