@@ -356,7 +356,7 @@ static void put_scaling(struct tag_rows *rows, struct table_row *row, const stru
     put(rows, row, NEGATE, negate ? "1" : "");
 }
 
-/* Writes a tag's alarm limits to its row. Omits all of them if they are not in ascending order, because any of them may be wrong. */
+/* Writes a tag's alarm limits to its row. Writes no limit if they are not in ascending order, because any one may be wrong. */
 static void put_limits(struct tag_rows *rows, struct table_row *row, const struct export_tag *tag)
 {
     int before = -1;
