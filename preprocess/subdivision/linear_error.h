@@ -60,8 +60,8 @@ void linear_error_weights_again(const struct linear_error *linear, const float p
    because all its sensors are farther away than the group's reach (maximum distance of influence). Returns a lower bound in
    metres. The interpolated value may peak there, so edges near such a point must be short. */
 double linear_error_rim_of(const struct linear_error *linear, const struct interp_norm *norms);
-/* Returns, from what linear_error_norms() wrote for a point, the smaller of two lengths in metres: that of linear_error_nearest(),
-   and the bound that linear_error_rim_of() returns. */
+/* Returns, from what linear_error_norms() wrote for a point, the smaller of two lengths in metres: the distance to the nearest sensor,
+   shorter in proportion to the power of its group above 2, and the bound that linear_error_rim_of() returns. */
 double linear_error_nearest_of(const struct linear_error *linear, const struct interp_norm *norms);
 /* Return the interpolation error at a point whose sample is `between` or `inside`, as a share of the range.
    linear_error_on_edge() compares it with the linear interpolation at fraction t between the samples of the edge's ends;
@@ -79,8 +79,8 @@ double linear_error_on_edge(const struct linear_error *linear, enum linear_error
                             const float *between, double wide_m, double slack_m);
 double linear_error_in_triangle(const struct linear_error *linear, enum linear_error_modes modes, const float *const corners[3],
                                 const double weights[3], const float *inside, double wide_m, double slack_m);
-/* Returns the straight-line distance in metres from the point to the nearest sensor, shorter in proportion to the power of a group
-   with a power above 2. Weights change over lengths that are proportional to the result. */
+/* Returns the straight-line distance in metres from the point to the nearest sensor of any group, shorter in proportion to the largest
+   power of a group above 2. Weights change over lengths that are proportional to the result. */
 double linear_error_nearest(const struct linear_error *linear, const float point_m[3]);
 
 #endif

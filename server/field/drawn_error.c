@@ -29,9 +29,11 @@ enum { MOST_SAMPLES = 10000000 };
 /* divisor in the bound of the interpolation error of shepard in a triangle, which is L^2 K / (6 d^2). L is the triangle's
    longest side, d its distance to the nearest sensor, and K / d^2 a bound on the second derivative of the weights */
 #define SHEPARD_ACCEPTED 6.0f
-/* added to K if weights fall to zero at a limited reach; d is then at most the distance to the end of the nearest sensor's reach.
-   In 720,000 random triangles with 2 to 40 sensors, many at the end of their reach, and powers of 0.25 to 4, K was at most 12. */
+/* added to K if weights fall to zero at a limited reach; d is then at most the distance to the end of the nearest sensor's reach. Each
+   sensor at the end of its reach adds at most REACH_BEND_EACH. In 720,000 random triangles with 2 to 40 sensors, many at the end of
+   their reach, and powers of 0.25 to 4, K was at most REACH_BEND. */
 #define REACH_BEND 12.0f
+#define REACH_BEND_EACH 2.0f
 /* for interpolation paper (Algorithm 1 of Kim & Suh): longest side of a triangle that needs no samples, as a fraction of the
    distance to the nearest sensor and of the radius R */
 #define PAPER_ACCEPTED 0.015f
@@ -505,9 +507,10 @@ static void prepare_some(void *arg, size_t begin, size_t end)
    power, D the distance and |grad D| = 1. With a limited reach, that of (1 - D / reach)^2 adds to it. */
 static float accepted_of(const struct weights *weights)
 {
-    float p = weights->power;
+    const float p = weights->power;
+    const float bend = weights->reach_m < INFINITY ? fmaxf(REACH_BEND, REACH_BEND_EACH * (float)weights->member_count) : 0;
     if (weights->interpolation == INTERPOLATION_SHEPARD)
-        return sqrtf(SHEPARD_ACCEPTED * STEP_OF_COLOR / (1.5f * p * p + 0.5f * p + (weights->reach_m < INFINITY ? REACH_BEND : 0)));
+        return sqrtf(SHEPARD_ACCEPTED * STEP_OF_COLOR / (1.5f * p * p + 0.5f * p + bend));
     for (size_t m = 0; m < weights->member_count; m++)
         if (weights->decay[weights->members[m]] != 1 || weights->strength[weights->members[m]] > 1)
             return 0;

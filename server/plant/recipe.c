@@ -49,8 +49,8 @@ uint64_t plant_recipe(const struct plant_asset *asset, uint64_t model_hash)
     return XXH3_64bits(&recipe, sizeof(recipe));
 }
 
-/* Returns the hash of the parameters of one sensor and its group. */
-static uint64_t cuts_recipe_of(const struct plant *plant, const struct plant_sensor *sensors, size_t count, size_t sensor)
+/* Returns the hash of the parameters of one sensor and its group, and of `before`: the hash of the sensors before it. */
+static uint64_t cuts_recipe_of(const struct plant *plant, const struct plant_sensor *sensors, size_t count, size_t sensor, uint64_t before)
 {
     const struct plant_tag *tag = &plant->tags[sensors[sensor].tag];
     const struct plant_group *group = &plant->groups[tag->group];
@@ -69,17 +69,16 @@ static uint64_t cuts_recipe_of(const struct plant *plant, const struct plant_sen
         .prepared = prepares ? group->prepared : 0,
         .disc_m = prepares ? group->disc_m : 0,
         .decay_m = plant_prepares(group, INTERPOLATION_FIN) ? plant_decay_m(&plant->assets[tag->asset]) : 0,
-        .flags = (uint64_t)group->heat | (uint64_t)group->directed << 1 | (uint64_t)cuts << 2 |
-                 (uint64_t)tag->place.assumed << 3 |
-                 (uint64_t)(plant_sensor_is_alone(plant, sensors, count, sensor) && !plant_cuts_for_paper(group, 1)) << 4,
+        .flags = (uint64_t)group->heat | (uint64_t)group->directed << 1 | (uint64_t)cuts << 2 | (uint64_t)tag->place.assumed << 3 |
+                 (uint64_t)(cuts && !plant_cuts_for_paper(group, 1) && plant_sensor_is_alone(plant, sensors, count, sensor)) << 4,
     };
-    return XXH3_64bits(&recipe, sizeof(recipe));
+    return XXH3_64bits_withSeed(&recipe, sizeof(recipe), before);
 }
 
 uint64_t plant_cuts_recipe(const struct plant *plant, const struct plant_sensor *sensors, size_t count)
 {
-    uint64_t sum = 0;
+    uint64_t hash = 0;
     for (size_t i = 0; i < count; i++)
-        sum += cuts_recipe_of(plant, sensors, count, i);
-    return sum;
+        hash = cuts_recipe_of(plant, sensors, count, i, hash);
+    return hash;
 }

@@ -13,8 +13,8 @@
 bool plant_model_hash(const char *path, uint64_t *out);
 /* Returns the hash of the asset's settings that affect its asset file: model, nodes, units, up axis and tolerance. */
 uint64_t plant_recipe(const struct plant_asset *asset, uint64_t model_hash);
-/* Returns the hash of the parameters of an asset's groups and tags for which plantcast-prep cuts its triangles, whatever the order of
-   its sensors. A reload can change these parameters without another run of plantcast-prep. */
+/* Returns the hash of the parameters of an asset's groups and tags for which plantcast-prep cuts its triangles, in the order of its
+   sensors; 0 without sensors. A reload can change these parameters without another run of plantcast-prep. */
 uint64_t plant_cuts_recipe(const struct plant *plant, const struct plant_sensor *sensors, size_t count);
 
 #endif

@@ -332,10 +332,11 @@ static void say_cuts_differ(struct log *log, const struct scene *scene)
         if (scene->assets[i].file && scene->assets[i].file->cuts_differ && count++ == 0)
             first = scene->assets[i].plant->id;
     if (count > 0)
-        log_warn(log,
-                 "assets prepared for other sensors, or other parameters of a group or tag: %zu (the first: %s); pictures mark places "
-                 "where their field may be wrong; run plantcast-prep again for a more accurate field",
-                 count, first);
+        log_warn(
+            log,
+            "assets prepared by an older plantcast-prep, or for other parameters of a group or tag: %zu (the first: %s); pictures mark "
+            "places where their field may be wrong; run plantcast-prep again for a more accurate field",
+            count, first);
 }
 
 /* Creates all assets. Checks and logs every asset, and returns false if one does not match its prepared file. */

@@ -254,7 +254,8 @@ static void merge_short_sides(struct surface *surface)
     surface->plane = mem_array(surface->report.triangles, sizeof(*surface->plane));
     for (uint32_t source = 0; source < surface->report.triangles; source++)
         surface->plane[source] = source;
-    short_sides_merge(&surface->mesh, surface->report.size_m, surface->plane);
+    const double within_m = min_of(SHORT_SIDES_WITHIN * surface->report.size_m, SHORT_SIDES_OF_TOLERANCE * surface->report.tolerance_m);
+    short_sides_merge(&surface->mesh, surface->report.size_m, within_m, surface->plane);
 }
 
 /* Samples the surface evenly: adds points until edges are no longer than the spacing. Rods and narrow strips take more points
@@ -306,8 +307,8 @@ static void find_strays(struct surface *surface)
     mem_free(used);
 }
 
-/* Groups the visible triangles of the surface by model triangle (each is a piece of one); coplanar model triangles that were
- * merged form one group. */
+/* Groups the visible triangles of the surface by model triangle (each is a piece of one). Model triangles that share pieces form one
+ * group: coplanar ones, and neighbours of needles that were merged. */
 static void list_pieces(struct surface *surface)
 {
     const struct trimesh *mesh = &surface->visible;

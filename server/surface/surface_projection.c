@@ -7,8 +7,8 @@
 #include "surface/surface_impl.h"
 
 #define SPOT_ON_SURFACE 1e-3 /* a point counts as lying on a triangle below this distance, in multiples of the mean edge length */
-/* A model triangle has pieces: the surface's triangles that lie in it. The search for the nearest piece ends when one is found within this
-   distance of the point, in multiples of the mean edge length. */
+/* A model triangle has pieces: the surface's triangles that lie in it, or at most SHORT_SIDES_WITHIN from its plane. The search for the
+   nearest piece ends when one is found within this distance of the point, in multiples of the mean edge length. */
 #define ON_PIECE 1e-5
 /* if the given model triangles are divided into more surface triangles (pieces) than this, the bounding volume hierarchy is searched
    instead of each piece */

@@ -207,11 +207,11 @@ static void make_shapes(struct along_shape *shapes)
 
 /* --- preparing -------------------------------------------------------------------------------------------------------------- */
 
-static void write_model(const struct along_shape *shapes, const char *folder)
+static void write_model(const struct along_shape *shapes, int shape_count, const char *folder)
 {
     struct text *bin = test_text(), *meshes = test_text(), *nodes = test_text(), *accessors = test_text(), *list = test_text();
     size_t size;
-    for (int i = 0; i < SHAPES; i++) {
+    for (int i = 0; i < shape_count; i++) {
         const struct cad *cad = &shapes[i].cad;
         const char *comma = i ? "," : "";
         text_add(accessors,
@@ -231,16 +231,16 @@ static void write_model(const struct along_shape *shapes, const char *folder)
     temp_write(folder, "model.glb", glb, size);
 }
 
-static struct plant *prepare(const struct along_shape *shapes, struct prep_case *c, const char *distance)
+static struct plant *prepare(const struct along_shape *shapes, int shape_count, struct prep_case *c, const char *distance)
 {
     struct text *tags = test_text(), *yaml = test_text();
     struct diag diag = { 0 };
-    write_model(shapes, c->folder);
+    write_model(shapes, shape_count, c->folder);
     text_add(yaml,
              "plant: { name: Along }\ngroups: [{ id: t, unit: K, min: 0, max: 1, power: 2, distance: %s }]\ntags: tags.csv\nassets:\n",
              distance);
     text_add(tags, "Tag Name,Group,Asset,X,Y,Z\n");
-    for (int i = 0; i < SHAPES; i++) {
+    for (int i = 0; i < shape_count; i++) {
         text_add(yaml, "  - { id: A%d, model: model.glb, nodes: shape%d, up: z }\n", i, i);
         for (size_t s = 0; s < shapes[i].sensor_count; s++)
             text_add(tags, "S%d-%zu,t,A%d,%.9g,%.9g,%.9g\n", i, s, i, shapes[i].sensors[s].at_m[0], shapes[i].sensors[s].at_m[1],
@@ -429,9 +429,10 @@ static void show(const char *name, const struct along_tally *tally)
 static void compare_prepared(struct prep_case *c, const char *distance, bool reloaded)
 {
     struct along_shape shapes[SHAPES] = { 0 };
+    const int shape_count = reloaded ? SOME_SHAPES : SHAPES;
     chance.state = sweep_seed();
     make_shapes(shapes);
-    struct plant *plant = prepare(shapes, c, distance);
+    struct plant *plant = prepare(shapes, shape_count, c, distance);
     struct log *log = test_log();
     struct workers *workers = test_workers(1);
     if (reloaded) {
@@ -445,7 +446,7 @@ static void compare_prepared(struct prep_case *c, const char *distance, bool rel
     struct along_place *places = mem_array(MOST_POINTS, sizeof(*places));
     double *distances_m = mem_array(MOST_POINTS * MOST_SENSORS, sizeof(*distances_m));
     struct along_tally all = { 0 };
-    for (int a = 0; a < (reloaded ? SOME_SHAPES : SHAPES); a++) {
+    for (int a = 0; a < shape_count; a++) {
         for (size_t s = 0; s < shapes[a].sensor_count; s++)
             snapshot->readings[scene->assets[a].sensors[s].tag] = (struct reading){ .value = s % 2, .quality = QUALITY_GOOD };
         const int off_before = all.picks_off;

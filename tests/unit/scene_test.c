@@ -287,6 +287,39 @@ static uint64_t models_hash(const struct scene_fixture *f)
 
 /* The models' hash contains what the manifest says about buffers and textures. Without that it contains the model files alone, and a
    model without such files has the same hash either way. */
+static uint64_t cuts_of(const struct scene_fixture *f, int asset)
+{
+    struct plant_sensor *sensors;
+    size_t count = plant_sensors(f->plant, asset, &sensors);
+    uint64_t cuts = plant_cuts_recipe(f->plant, sensors, count);
+    mem_free(sensors);
+    return cuts;
+}
+
+/* After a reload with other parameters than those for which triangles were cut, no level counts as resolved. */
+CASE(cuts_for_other_parameters_are_known)
+{
+    const uint64_t cuts = cuts_of(f, 0);
+    assert_true(cuts == cuts_of(f, 1) && cuts == cuts_of(f, 2));
+    write_manifest_with(f, test_printf(", \"cuts\": \"%016" PRIx64 "\", \"resolved_levels\": 1", cuts));
+    for (int other = 0; other < 2; other++) {
+        f->plant->groups[0].power = other ? 4 : 2;
+        struct scene *scene = scene_create(f->log, f->plant, f->prepared);
+        assert_non_null(scene);
+        assert_int_equal(scene->assets[0].file->cuts_differ, other);
+        assert_int_equal(scene->assets[0].file->resolved_levels, !other);
+        scene_destroy(&scene);
+    }
+    f->plant->groups[0].power = 2;
+    assert_true(cuts_of(f, 1) == cuts);
+    /* two tags of one asset exchange their parameters */
+    f->plant->tags[1].strength = 0.5;
+    const uint64_t first = cuts_of(f, 1);
+    f->plant->tags[1].strength = 1;
+    f->plant->tags[4].strength = 0.5;
+    assert_true(first != cuts && cuts_of(f, 1) != cuts && cuts_of(f, 1) != first);
+}
+
 CASE(the_hash_of_the_models_covers_the_files_that_they_refer_to)
 {
     uint64_t model, alone = models_hash(f);

@@ -233,9 +233,29 @@ static bool try_point(const struct merging *merging, uint32_t point)
     return true;
 }
 
+/* Replaces each point by its target, and drops triangles that lost a corner. */
+static void rename_points(const struct merging *merging)
+{
+    struct trimesh *mesh = merging->mesh;
+    size_t kept = 0;
+    for (size_t t = 0; t < mesh->tri_count; t++) {
+        uint32_t v[3];
+        for (int i = 0; i < 3; i++)
+            v[i] = merging->target[mesh->tris[t][i]];
+        if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0])
+            continue;
+        memcpy(mesh->tris[kept], v, sizeof(v));
+        mesh->tri_source[kept] = mesh->tri_source[t];
+        if (mesh->tri_times)
+            mesh->tri_times[kept] = mesh->tri_times[t];
+        kept++;
+    }
+    mesh->tri_count = kept;
+}
+
 static size_t merge_round(const struct merging *merging)
 {
-    size_t count = 0, dropped = 0, points = merging->mesh->point_count;
+    size_t count = 0, points = merging->mesh->point_count;
     list_tris(merging);
     memset(merging->locked, 0, points);
     for (uint32_t p = 0; p < points; p++)
@@ -243,13 +263,22 @@ static size_t merge_round(const struct merging *merging)
     for (uint32_t p = 0; p < points; p++)
         count += merging->is_short[p] && !merging->locked[p] && try_point(merging, p);
     if (count > 0)
-        trimesh_rename(merging->mesh, merging->target, &dropped, &dropped);
+        rename_points(merging);
     return count;
 }
 
-size_t short_sides_merge(struct trimesh *mesh, double size_m, uint32_t *plane)
+/* Drops triangles that became flat or duplicates. */
+static void clean(const struct merging *merging)
 {
-    struct merging merging = { .mesh = mesh, .short_m = SHORT_OF_SIZE * size_m, .within_m = SHORT_SIDES_WITHIN * size_m, .plane = plane };
+    size_t dropped = 0;
+    for (uint32_t p = 0; p < merging->mesh->point_count; p++)
+        merging->target[p] = p;
+    trimesh_rename(merging->mesh, merging->target, &dropped, &dropped);
+}
+
+size_t short_sides_merge(struct trimesh *mesh, double size_m, double within_m, uint32_t *plane)
+{
+    struct merging merging = { .mesh = mesh, .short_m = SHORT_OF_SIZE * size_m, .within_m = within_m, .plane = plane };
     size_t count = 0, more = 1;
     merging.is_short = mem_try_array(mesh->point_count, 1);
     if (merging.is_short && mark_short(&merging)) {
@@ -262,6 +291,8 @@ size_t short_sides_merge(struct trimesh *mesh, double size_m, uint32_t *plane)
     const bool good = merging.locked && merging.moved_m && merging.target && merging.first && merging.tris;
     for (int round = 0; good && round < MAX_ROUNDS && more > 0 && (round == 0 || mark_short(&merging)); round++)
         count += more = merge_round(&merging);
+    if (count > 0)
+        clean(&merging);
     mem_free(merging.is_short);
     mem_free(merging.locked);
     mem_free(merging.moved_m);
