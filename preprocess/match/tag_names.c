@@ -14,11 +14,21 @@ void tag_names_add(struct tag_names *names, const char *tag, const char *detail,
     text_add(&names->names, "%s%.120s", names->count > 1 ? ", " : "", tag);
     if (!*detail)
         return;
+    size_t before = names->names.length;
     text_add(&names->names, " (");
     va_start(ap, detail);
     text_add_v(&names->names, detail, ap);
     va_end(ap);
-    text_add(&names->names, ")");
+    if (names->names.length > before + 2)
+        text_add(&names->names, ")");
+    else /* the detail is an empty text: omit the brackets */
+        names->names.at[names->names.length = before] = 0;
+}
+
+void tag_names_join(struct tag_names *names, const struct tag_names *one)
+{
+    if (one->count > 0 && names->count++ < NAMED)
+        text_add(&names->names, "%s%s", names->count > 1 ? ", " : "", one->names.at);
 }
 
 void tag_names_say(const struct tag_names *names, const char *one, const char *many, struct text *out)

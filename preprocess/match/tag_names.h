@@ -13,6 +13,8 @@ struct tag_names { /* zero-initialise */
 
 /* Adds a tag. detail: printf format of a text that is shown after the name; "": none. */
 void tag_names_add(struct tag_names *names, const char *tag, const char *detail, ...) __attribute__((format(printf, 3, 4)));
+/* Adds the tag of a list that has at most one. */
+void tag_names_join(struct tag_names *names, const struct tag_names *one);
 /* Appends the line "COUNT ONE: NAMES", or "COUNT MANY: NAMES" if there are several tags; nothing if there is no tag. */
 void tag_names_say(const struct tag_names *names, const char *one, const char *many, struct text *out);
 void tag_names_finish(struct tag_names *names);

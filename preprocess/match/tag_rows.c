@@ -224,7 +224,7 @@ static bool is_left_out(struct tag_rows *rows, const struct export_tag *tag, con
         return true;
     bool whole = address.table != TABLE_COIL && address.table != TABLE_DISCRETE && address.bit < 0,
          bit = type && !strcasecmp(type, "Boolean");
-    if (type && !(whole && bit))
+    if (!whole || (type && !bit)) /* a single bit is Boolean, whatever its type in the export */
         return false;
     if (type)
         tag_names_add(&rows->types, tag->fields[EXPORT_NAME], "%.40s at %.40s, not at a bit such as %.40s.0", stated, text, text);
@@ -429,7 +429,7 @@ static bool same_cell(enum column column, const char *a, const char *b, const st
     enum data_type types[2];
     double numbers[2];
     char why[200];
-    if (!strcasecmp(a, b) && column != ADDRESS)
+    if (column != ADDRESS && column != UNITS && !strcasecmp(a, b)) /* in units, capitals may matter: mW, MW */
         return true;
     if (column == UNITS)
         return units_compare(a, b, &change) == UNITS_SAME;
@@ -454,28 +454,49 @@ static bool is_stated(const struct tag_rows *fresh, enum column column, const st
     return column == NEGATE && *tag->fields[EXPORT_NEGATE];
 }
 
+static bool is_blank(const struct tag_rows *rows, const struct table_row *row, enum column first, enum column last)
+{
+    for (enum column column = first; column <= last; column++)
+        if (*table_cell(row, find_column(rows, column)))
+            return false;
+    return true;
+}
+
 /* Adds a tag to `differing` if its row would now be written with another address, type, scaling, unit or limit. The first such
- * column is named. */
-static void compare(struct tag_rows *rows, const struct table_row *row, const struct tag_row_input *input)
+ * column is named. Names what the export states but Plantcast cannot use, if the row has nothing in its place.
+ * unknown_type: the export's data type is unknown or does not fit the address. */
+static void compare(struct tag_rows *rows, const struct table_row *row, const struct tag_row_input *input, bool unknown_type)
 {
     static const enum column compared[] = {
         ADDRESS, TYPE, SCALING, RAW_LOW, RAW_HIGH, SCALED_LOW, SCALED_HIGH, NEGATE, UNITS, LL, L, H, HH
     };
+    const struct export_tag *tag = input->tag;
     struct tag_rows fresh = { 0 };
+    bool named = false;
     add_header(&fresh);
     put_values(&fresh, add_row(&fresh), input);
-    for (size_t i = 0; i < sizeof(compared) / sizeof(*compared); i++) {
+    for (size_t i = 0; i < sizeof(compared) / sizeof(*compared) && !named; i++) {
         enum column column = compared[i];
         const char *ours = table_cell(row, find_column(rows, column)), *theirs = table_cell(&fresh.at[1], (int)column);
         bool is_default =
-            column == TYPE && !*ours && input->source->modbus && (!strcasecmp(theirs, "Word") || !strcasecmp(theirs, "Boolean"));
-        if (!is_stated(&fresh, column, input->tag) || is_default || same_cell(column, ours, theirs, input->source) ||
+            column == TYPE && !*ours && (!input->source->modbus || !strcasecmp(theirs, "Word") || !strcasecmp(theirs, "Boolean"));
+        if (!is_stated(&fresh, column, tag) || is_default || same_cell(column, ours, theirs, input->source) ||
             (column == SCALING && !*theirs && !strcasecmp(ours, "None")) || (column == NEGATE && !*theirs && !strcmp(ours, "0")))
             continue;
-        tag_names_add(&rows->differing, input->tag->fields[EXPORT_NAME], "%s %.60s, in the export %.60s", names[column],
-                      *ours ? ours : "blank", *theirs ? theirs : "blank");
-        break;
+        if (!*theirs)
+            theirs = column == SCALING ? tag->fields[EXPORT_SCALING] : "0";
+        tag_names_add(&rows->differing, tag->fields[EXPORT_NAME], "%s %.60s, in the export %.60s", names[column], *ours ? ours : "blank",
+                      theirs);
+        named = true;
     }
+    if (!named && unknown_type && is_blank(rows, row, TYPE, TYPE))
+        tag_names_add(&rows->differing, tag->fields[EXPORT_NAME], "%s blank, in the export %.60s", names[TYPE], tag->fields[EXPORT_TYPE]);
+    if (is_blank(rows, row, SCALING, SCALING))
+        tag_names_join(&rows->scalings, &fresh.scalings);
+    if (is_blank(rows, row, SCALED_LOW, SCALED_HIGH))
+        tag_names_join(&rows->ranges, &fresh.ranges);
+    if (is_blank(rows, row, LL, HH))
+        tag_names_join(&rows->limits, &fresh.limits);
     tag_rows_finish(&fresh);
 }
 
@@ -493,11 +514,11 @@ const char *tag_rows_put(struct tag_rows *rows, const struct tag_row_input *inpu
         put_equipment(rows, row, input);
     } else {
         struct tag_rows unused = { 0 };
-        bool left_out = is_left_out(&unused, tag, input->source);
+        bool left_out = is_left_out(&unused, tag, input->source), unknown_type = unused.types.count > 0;
         tag_rows_finish(&unused);
         if (!*table_cell(row, find_column(rows, ADDRESS)) && !left_out)
             put_address(rows, row, input);
-        compare(rows, row, input);
+        compare(rows, row, input, unknown_type);
         if (may_put(input, table_cell(row, find_column(rows, ASSET))))
             put_equipment(rows, row, input);
     }
