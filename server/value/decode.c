@@ -76,13 +76,13 @@ static double raw_of(const struct plant_tag *tag, const uint16_t *words)
     }
 }
 
-static double bit_of(const struct plant_tag *tag, uint16_t word)
+/* Returns the bit of a tag as the device sent it: 0 or 1, before `negate`. */
+static bool raw_bit_of(const struct plant_tag *tag, uint16_t word)
 {
     bool in_register = tag->signal.table == TABLE_INPUT || tag->signal.table == TABLE_HOLDING;
     if (in_register)
         word = (uint16_t)join_words(tag->signal.byte_order, &word, 1);
-    bool set = in_register && tag->signal.bit >= 0 ? word >> tag->signal.bit & 1 : word != 0;
-    return set != tag->scale.negate;
+    return in_register && tag->signal.bit >= 0 ? word >> tag->signal.bit & 1 : word != 0;
 }
 
 static bool beyond(double raw, double a, double b)
@@ -130,12 +130,14 @@ static uint32_t judge_current(const struct tag_scale *scale, double raw)
     return ma < MEASURED_LOW_MA - rounding_ma || ma > MEASURED_HIGH_MA + rounding_ma ? QUALITY_UNCERTAIN_UNITS_EXCEEDED : QUALITY_GOOD;
 }
 
-static uint32_t judge_range(const struct tag_scale *scale, double raw)
+/* Returns the quality of a value by the instrument's range. raw: the number that the device sent; value: the number after
+   scaling and negation, in the tag's own unit. */
+static uint32_t judge_range(const struct tag_scale *scale, double raw, double value)
 {
     if (scale->ne43)
         return judge_current(scale, raw);
     if (scale->kind != SCALING_NONE ? beyond(raw, scale->raw_low, scale->raw_high)
-                                           : scale->has_range && beyond(raw, scale->scaled_low, scale->scaled_high))
+                                    : scale->has_range && beyond(value, scale->scaled_low, scale->scaled_high))
         return QUALITY_UNCERTAIN_UNITS_EXCEEDED;
     return QUALITY_GOOD;
 }
@@ -163,39 +165,41 @@ static void decode_analog(const struct tag_scale *scale, const uint64_t *bits, d
         return;
     }
     double value = scale->kind == SCALING_NONE ? raw : scaled(scale, raw);
-    out->value = unit_change_value(&scale->change, scale->negate ? -value : value);
-    out->quality = judge_range(scale, raw);
+    if (scale->negate)
+        value = -value;
+    out->value = unit_change_value(&scale->change, value);
+    out->quality = judge_range(scale, raw, value);
     if (!isfinite(out->value))
+        fail(out);
+}
+
+/* Decodes a bit. bits and raw: as in decode_analog(). Special values are compared before `negate`, because they are raw values. */
+static void decode_bit(const struct tag_scale *scale, const uint64_t *bits, double raw, struct sample *out)
+{
+    out->value = (raw != 0) != scale->negate;
+    out->quality = QUALITY_GOOD;
+    if (!isfinite(raw) || is_sentinel(scale, bits, raw))
         fail(out);
 }
 
 void decode_sample(const struct plant_tag *tag, const uint16_t *words, struct sample *out)
 {
     uint64_t bits = join_words(tag->signal.byte_order, words, decode_width(tag));
-    double raw = is_bit(&tag->signal) ? bit_of(tag, words[0]) : raw_of(tag, words);
-    if (!is_bit(&tag->signal)) {
-        decode_analog(&tag->scale, &bits, raw, out);
-        return;
-    }
-    out->value = raw;
-    out->quality = QUALITY_GOOD;
-    if (is_sentinel(&tag->scale, &bits, raw))
-        fail(out);
+    if (is_bit(&tag->signal))
+        decode_bit(&tag->scale, &bits, raw_bit_of(tag, words[0]), out);
+    else
+        decode_analog(&tag->scale, &bits, raw_of(tag, words), out);
 }
 
 void decode_number(const struct plant_tag *tag, double raw, struct sample *out)
 {
-    if (tag->signal.type != DATA_BIT) {
+    if (tag->signal.type == DATA_BIT)
+        decode_bit(&tag->scale, NULL, raw, out);
+    else
         decode_analog(&tag->scale, NULL, raw, out);
-        return;
-    }
-    out->value = (raw != 0) != tag->scale.negate;
-    out->quality = QUALITY_GOOD;
-    if (!isfinite(raw) || is_sentinel(&tag->scale, NULL, raw))
-        fail(out);
 }
 
 uint32_t decode_quality(const struct plant_tag *tag, double value)
 {
-    return isfinite(value) ? judge_range(&tag->scale, value) : QUALITY_BAD_SENSOR_FAILURE;
+    return isfinite(value) ? judge_range(&tag->scale, value, value) : QUALITY_BAD_SENSOR_FAILURE;
 }

@@ -146,6 +146,24 @@ TEST(bits)
     assert_true(decode(&coil, (uint16_t[]){ 0 }).value == 1);
 }
 
+/* `Open Circuit` lists raw values, so `Negate Value` must not change which bit matches. */
+TEST(the_failure_value_of_a_negated_bit_is_raw)
+{
+    struct plant_tag tag = { .signal.table = TABLE_COIL,
+                             .signal.type = DATA_BIT,
+                             .signal.bit = -1,
+                             .scale.negate = true,
+                             .scale.sentinel_count = 1,
+                             .scale.sentinels = { { .number = 1 } } };
+    for (uint16_t bit = 0; bit < 2; bit++) {
+        uint32_t want = bit ? QUALITY_BAD_SENSOR_FAILURE : QUALITY_GOOD;
+        struct sample sample;
+        assert_int_equal(decode(&tag, &bit).quality, want);
+        decode_number(&tag, bit, &sample);
+        assert_int_equal(sample.quality, want);
+    }
+}
+
 static struct plant_tag scaled(enum scaling scaling, double raw_low, double raw_high, double low, double high)
 {
     struct plant_tag tag = tag_of(DATA_INT16, BYTE_ORDER_NONE);
@@ -292,4 +310,12 @@ TEST(a_range_without_scaling_is_the_instrument_s)
     struct sample above = decode(&tag, &(uint16_t){ 151 });
     assert_true(above.quality == QUALITY_UNCERTAIN_UNITS_EXCEEDED && above.value == 151);
     assert_int_equal(quality_of_raw(&tag, -51), QUALITY_UNCERTAIN_UNITS_EXCEEDED);
+    tag.scale.negate = true; /* the range applies to the value that Plantcast shows */
+    assert_int_equal(quality_of_raw(&tag, -150), QUALITY_GOOD);
+    assert_int_equal(quality_of_raw(&tag, -151), QUALITY_UNCERTAIN_UNITS_EXCEEDED);
+    assert_int_equal(quality_of_raw(&tag, 50), QUALITY_GOOD);
+    assert_int_equal(quality_of_raw(&tag, 51), QUALITY_UNCERTAIN_UNITS_EXCEEDED);
+    struct sample sample;
+    decode_number(&tag, -120, &sample);
+    assert_true(sample.quality == QUALITY_GOOD && sample.value == 120);
 }
