@@ -58,6 +58,16 @@ uint64_t loop_check_fingerprint(const struct plant *plant, int index)
              at_m[0], at_m[1], at_m[2]);
     if (scale->change.converts)
         text_add(&text, "|%.17g|%.17g", scale->change.factor, scale->change.offset);
+    /* appended only if set: loop checks of tags without these settings keep the fingerprint that older versions recorded */
+    if (scale->ne43)
+        text_add(&text, "|ne43");
+    for (int i = 0; i < scale->sentinel_count; i++) {
+        const struct plant_sentinel *sentinel = &scale->sentinels[i];
+        if (sentinel->is_bits)
+            text_add(&text, "|0x%" PRIx64, sentinel->bits);
+        else
+            text_add(&text, "|open %.17g", sentinel->number);
+    }
     uint64_t hash = XXH3_64bits(text.at, text.length);
     text_finish(&text);
     return hash;

@@ -53,8 +53,8 @@ void loop_checks_print(const struct loop_checks *loop_checks, struct text *out);
 /* Returns true if pictures must mark the tag as unproven: at least one tag has been checked, but this one has not passed.
    Derived tags are never marked. Call from any thread. */
 bool loop_checks_unproven(const struct loop_checks *loop_checks, int tag);
-/* Returns a hash of all settings whose change invalidates a tag's loop check: source, address, type, byte order, scaling, asset
-   and position. */
+/* Returns a hash of all settings whose change invalidates a tag's loop check: source, address, type, byte order, scaling, NE 43,
+   values that mean an open circuit, asset and position. */
 uint64_t loop_check_fingerprint(const struct plant *plant, int tag);
 
 #endif

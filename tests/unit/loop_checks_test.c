@@ -95,7 +95,7 @@ TEST_WITH(test_a_tag_that_is_another_is_unproven_again, set_up, tear_down)
     struct plant_tag *tag = &f->plant->tags[0], was = *tag;
     assert_int_equal(loop_checks_add(f->loop_checks, 0, &passed), REFUSAL_NONE);
     uint64_t before = loop_check_fingerprint(f->plant, 0);
-    for (int change = 0; change < 6; change++) {
+    for (int change = 0; change < 9; change++) {
         *tag = was;
         switch (change) {
         case 0: tag->signal.register_index++; break;
@@ -103,6 +103,9 @@ TEST_WITH(test_a_tag_that_is_another_is_unproven_again, set_up, tear_down)
         case 2: tag->scale.scaled_high += 1; break;
         case 3: tag->scale.negate = !tag->scale.negate; break;
         case 4: tag->place.position_m[1] += 0.25; break;
+        case 5: tag->scale.ne43 = !tag->scale.ne43; break;
+        case 6: tag->scale.sentinels[tag->scale.sentinel_count++] = (struct plant_sentinel){ .number = -999.9 }; break;
+        case 7: tag->scale.sentinels[tag->scale.sentinel_count++] = (struct plant_sentinel){ .is_bits = true, .bits = 0x8000 }; break;
         default: tag->signal.modbus_unit++; break;
         }
         assert_true(loop_check_fingerprint(f->plant, 0) != before);
