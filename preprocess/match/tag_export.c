@@ -47,6 +47,34 @@ static void drop_limits(struct export_tag *tag, const struct tag_header *header,
         }
 }
 
+static void replace_field(struct export_tag *tag, enum export_field field, const char *text)
+{
+    mem_free(tag->fields[field]);
+    tag->fields[field] = mem_strdup(text);
+}
+
+/* Sets the address and data type of an InTouch tag whose item is a Modbus register: the register's number, and a suffix of AVEVA's
+ * Modbus driver for the type. InTouch's own type does not tell how many registers the value has. If the suffix is unknown, the
+ * whole item becomes the data type, so that the tag is left out and named. */
+static void read_register_item(struct export_tag *tag)
+{
+    static const struct {
+        const char *suffix, *type;
+    } suffixes[] = { { "", "Word" }, { "S", "Short" }, { "I", "Long" }, { "L", "Long" }, { "U", "DWord" }, { "F", "Float" } };
+    const char *item = tag->fields[EXPORT_ADDRESS] ? tag->fields[EXPORT_ADDRESS] : "";
+    size_t digits = strspn(item, "0123456789");
+    const char *suffix = item + digits + strspn(item + digits, " "), *type = item;
+    if ((*item != '3' && *item != '4') || digits < 5 || digits > 6 || strspn(suffix, ".#:") > 0)
+        return;
+    for (size_t i = 0; i < sizeof(suffixes) / sizeof(*suffixes); i++)
+        if (!strcasecmp(suffix, suffixes[i].suffix))
+            type = suffixes[i].type;
+    char *address = mem_printf("%.*s", (int)digits, item);
+    replace_field(tag, EXPORT_TYPE, type);
+    replace_field(tag, EXPORT_ADDRESS, address);
+    mem_free(address);
+}
+
 static void read_row(struct tag_export *list, const struct tag_header *header, const struct table_row *row)
 {
     const char *name = table_cell(row, header->columns[EXPORT_NAME]), *type = table_cell(row, header->tag_type);
@@ -63,6 +91,8 @@ static void read_row(struct tag_export *list, const struct tag_header *header, c
     drop_limits(tag, header, row);
     if (header->data_type)
         export_tag_set(tag, EXPORT_TYPE, header->data_type);
+    if (header->data_type && strcmp(header->data_type, "Boolean") != 0 && strcmp(header->data_type, "String") != 0)
+        read_register_item(tag);
 }
 
 /* --- Studio 5000 exports, which have several kinds of rows: tags, aliases, comments --- */

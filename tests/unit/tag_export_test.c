@@ -418,6 +418,7 @@ TEST(test_aveva)
     check(&list, 0, EXPORT_ADDRESS, "10001");
     check(&list, 1, EXPORT_NAME, "TI101");
     check(&list, 1, EXPORT_TYPE, "Float");
+    check(&list, 1, EXPORT_ADDRESS, "40001");
     check(&list, 1, EXPORT_SCALED_HIGH, "250");
     check(&list, 1, EXPORT_H, "200");
     check(&list, 1, EXPORT_RAW_HIGH, "4095");
@@ -434,6 +435,7 @@ TEST(test_aveva)
                   "ROCTimeBase,MinRaw,MaxRaw,Conversion,AccessName,ItemUseTagname,ItemName,ReadOnly,AlarmComment\n"
                   "\"TI102\",\"Unit10\",\"\",No,No,0,No,No,0,0,\"degC\",0,0,250,0,0,Off,0,1,Off,0,1,On,200,1,Off,0,1,Off,0,1,Off,0,1,"
                   "0,Off,0,1,Min,0,4095,Linear,\"PLC1\",No,\"40003\",No,\"\"\n"));
+    check(&list, 0, EXPORT_TYPE, "Word"); /* one register, although the section is IOReal */
     check(&list, 0, EXPORT_LL, "");
     check(&list, 0, EXPORT_L, "");
     check(&list, 0, EXPORT_H, "200");

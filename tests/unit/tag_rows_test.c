@@ -158,6 +158,33 @@ TEST(test_types)
     finish(&run);
 }
 
+/* The item of an InTouch tag states how many registers its value has. The section (IOReal, IOInt) is only InTouch's own type. */
+TEST(test_intouch_items)
+{
+    static const struct {
+        const char *section, *item, *address, *type; /* type: NULL: the tag is left out */
+    } cases[] = {
+        { "IOReal", "40001", "40001", "Word" },    { "IOInt", "300001", "300001", "Word" },    { "IOReal", "40001 F", "40001", "Float" },
+        { "IOInt", "40001 f", "40001", "Float" },  { "IOReal", "400001 L", "400001", "Long" }, { "IOReal", "40001 I", "40001", "Long" },
+        { "IOReal", "40001 S", "40001", "Short" }, { "IOInt", "40001 U", "40001", "DWord" },   { "IOInt", "10001", "10001", "" },
+        { "IOReal", "40001.3", "40001.3", "" },    { "IODisc", "10001", "10001", "Boolean" },  { "IOReal", "40001 LF", "40001", NULL },
+        { "IODisc", "40001", "40001", NULL },
+    };
+    for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
+        struct rows_run run;
+        put(&run, NULL,
+            test_printf(":mode=ask\n:%s,Group,Comment,ItemName\n\"T\",\"$System\",\"\",\"%s\"\n", cases[i].section, cases[i].item),
+            &modbus);
+        if (cases[i].type &&
+            (strcmp(cell_of(&run, "T", "Address"), cases[i].address) != 0 || strcmp(cell_of(&run, "T", "Data Type"), cases[i].type) != 0))
+            fail_msg("%s %s: '%s' '%s'", cases[i].section, cases[i].item, cell_of(&run, "T", "Address"), cell_of(&run, "T", "Data Type"));
+        assert_int_equal(run.rows.types.count, cases[i].type ? 0 : 1);
+        if (!strcmp(cases[i].item, "40001 LF"))
+            expect_names("types", &run.rows.types, "T (40001 LF)");
+        finish(&run);
+    }
+}
+
 TEST(test_limits)
 {
     struct rows_run run;
