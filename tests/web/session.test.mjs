@@ -553,13 +553,14 @@ test('a leader who has left is still named', () => {
     assert.deepEqual([session.following.who, session.following.gone], ['kim', true]);
 });
 
-test('the halves of a split view have errors of their own, which a reconnect forgets', () => {
+test('the halves of a split view have errors of their own, which a reload of the plant forgets', () => {
     const { session, socket } = greeted(WANTED), heard = [];
     session.on('shown', () => heard.push(session.drawnErrors.join()));
     for (const fields of [{ drawn_error: 2, drawn_error_right: 0.05 }, { drawn_error_right: 0.1 }, {}, { drawn_error: 0 }])
         socket.say({ type: 'markers', seq: 1, ...fields });
     assert.deepEqual(heard, ['2,0.05', '2,0.1', '0,0.1']);
-    session.hello(['camera', 'params']);
+    socket.say({ type: 'markers', seq: 2, drawn_error: 2 });
+    socket.say(welcome);
     assert.deepEqual(session.drawnErrors, [0, 0]);
 });
 
@@ -585,12 +586,67 @@ test('a follower\'s picture keeps its parameters until a picture with the leader
     session.follow(null);
     socket.say({ ...vector('server/following-nobody.json'), params_seq: 2, group: 'pressure' });
     assert.equal(shown(), 'humidity', 'the leader\'s picture is still on the screen');
-    draw(2);
-    assert.equal(shown(), 'pressure');
     for (let seq = 2; seq < 9; seq++)
         session.setParams({ group: 'temperature' });
     draw(9);
     assert.equal(shown(), 'temperature', 'the leader\'s numbers are forgotten');
+});
+
+test('a user who stops following sees the parameters of the own pictures, whatever numbers the leader has used', () => {
+    const own = (session, group) => assert.equal(session.shown.group, group);
+    const started = () => {
+        const { session, socket } = greeted(WANTED);
+        const draw = (paramsSeq) => session.drawn({ seq: 1, cameraSeq: 0, paramsSeq, camera: session.camera }, 1);
+        draw(1);
+        session.follow(12);
+        socket.say({ ...vector('server/following.json'), params_seq: 2, group: 'humidity' });
+        draw(2);
+        own(session, 'humidity');
+        return { session, socket, draw, nobody: { ...vector('server/following-nobody.json'), params_seq: 1, group: 'pressure' } };
+    };
+    const asks = started(); // "own view", and then a change
+    asks.session.follow(null);
+    asks.socket.say(asks.nobody);
+    asks.session.setParams({ group: 'temperature' });
+    own(asks.session, 'humidity');
+    asks.draw(2);
+    own(asks.session, 'temperature');
+    const changes = started(); // a change, which ends the following
+    changes.session.setParams({ group: 'temperature' });
+    own(changes.session, 'humidity');
+    changes.draw(2); // still the leader's
+    changes.socket.say(changes.nobody);
+    changes.socket.say({ ...vector('server/params.json'), seq: 2, group: 'temperature', colormap: 'relief' });
+    changes.draw(2);
+    assert.equal(changes.session.shown, changes.session.params);
+});
+
+test('a leader\'s picture whose number no message has stated keeps the parameters shown so far', () => {
+    const { session, socket } = greeted(WANTED), following = vector('server/following.json');
+    const draw = (paramsSeq) => session.drawn({ seq: 1, cameraSeq: 0, paramsSeq, camera: session.camera }, 1);
+    session.follow(12);
+    socket.say({ ...following, params_seq: 8, group: 'temperature' });
+    draw(8);
+    socket.say({ ...following, params_seq: 10, group: 'humidity' }); // the server has skipped 9
+    draw(9);
+    assert.equal(session.shown.group, 'temperature');
+    socket.say({ ...following, params_seq: 11, group: 'pressure' });
+    draw(10);
+    assert.equal(session.shown.group, 'humidity');
+});
+
+test('a follower on a server that states no numbers shows the leader\'s parameters', () => {
+    const { session, socket } = greeted(WANTED), { params_seq: _, ...following } = vector('server/following.json');
+    const draw = (paramsSeq) => session.drawn({ seq: 1, cameraSeq: 0, paramsSeq, camera: session.camera }, 1);
+    session.setParams({ group: 'pressure' });
+    draw(2);
+    session.follow(12);
+    for (const group of ['temperature', 'humidity']) {
+        socket.say({ ...following, group });
+        assert.equal(session.shown.group, group);
+        draw(2);
+        assert.equal(session.shown.group, group);
+    }
 });
 
 test('a user who begins to lead no longer follows; the shown camera stays until another is sent', () => {

@@ -183,7 +183,6 @@ export class Session {
         this.greetedSize = this.size;
         this.unsent = {};
         this.markers.clear();
-        this.drawnErrors = [0, 0];
         this.latency.clear();
         this.cameraSeq = this.paramsSeq = 0;
         this.asked = new Map([[-1, shown]]);
@@ -262,6 +261,13 @@ export class Session {
             this.follow(null);
         const own = change.group && change.group !== this.params.group ? pick(this.model?.group(change.group) ?? {}, GROUPS_OWN) : {};
         const split = change.split && { split: { ...this.params.split, ...change.split } };
+        // The next number may also be one of the session that this one has followed: forgets that session's parameters.
+        const next = this.paramsSeq + 1;
+        if (this.picture?.paramsSeq === next) {
+            this.remember(-1, this.shown);
+            this.picture.paramsSeq = -1;
+        }
+        this.asked.delete(next);
         this.remember(this.paramsSeq, this.params);
         this.params = { ...this.params, ...own, ...change, ...split, ...this.mergedSensors(change.sensors) };
         if (this.welcomed)
@@ -275,6 +281,15 @@ export class Session {
     remember(seq, params) {
         this.asked.delete(seq); // so that the number becomes the newest
         this.asked.set(seq, params);
+    }
+
+    // Forgets the parameters that were shown or asked for before those with this number; all, if the number is not known.
+    forgetBefore(seq) {
+        for (const earlier of this.asked.keys()) {
+            if (earlier === seq)
+                break;
+            this.asked.delete(earlier);
+        }
     }
 
     // Merges changed factors of single sensors into the current ones. null for a sensor removes its factors; null as a whole removes all.
@@ -336,11 +351,12 @@ export class Session {
         if (this.lent)
             this.camera = asAsked(frame.camera);
         this.picture = { ...frame, payload: null, bytes: frame.payload?.length ?? 0, at: now };
-        for (const seq of this.asked.keys()) { // in the order in which the parameters were shown or asked for
-            if (seq === frame.paramsSeq)
-                break;
-            this.asked.delete(seq);
-        }
+        if (this.following && !this.asked.has(frame.paramsSeq)) {
+            // No message `following` has stated this number: it skipped it, or is still to come. Keeps the parameters shown so far.
+            this.remember(-1, shown);
+            this.picture.paramsSeq = -1;
+        } else
+            this.forgetBefore(frame.paramsSeq);
         if (this.shown !== shown)
             this.emit('shown');
         this.freshen();
@@ -468,8 +484,9 @@ const HANDLERS = {
     welcome(message) {
         const before = this.model;
         this.model = new Model(message);
-        // drops the sensor markers of the previous plant or connection
+        // drops the sensor markers and the drawn errors of the previous plant or connection
         this.markers.clear();
+        this.drawnErrors = [0, 0];
         this.forget();
         this.welcomed = true;
         this.id = message.session;
@@ -534,8 +551,9 @@ const HANDLERS = {
         this.markers.set(message.seq, known);
     },
 
-    // From `params_seq` on, pictures show the parameters in this message. Numbers of the followed session may equal those of this
-    // session, so the picture on the screen, which keeps its parameters, gets a number that is never used.
+    // Later pictures with the number `params_seq` show the parameters in this message. Numbers of the followed session may equal
+    // those of this session, so the picture on the screen, which keeps its parameters, gets a number that is never used. An
+    // older server sends no number: the parameters are then taken to be those of the picture on the screen.
     following({ session, who, width, height, gone = false, params_seq: seq, ...shown }) {
         const { shown: before, picture } = this;
         this.lent ||= session ?? this.leader;
@@ -544,12 +562,17 @@ const HANDLERS = {
         this.following = session === null ? null : { session, who: name, width, height, ...(gone ? { gone } : {}) };
         this.leader = session;
         this.confirmed = this.params = pick(shown, SAID);
-        if (picture) {
+        if (seq === undefined)
+            this.asked.clear();
+        else if (picture) {
             this.remember(-1, before);
             this.remember(picture.paramsSeq, before);
             picture.paramsSeq = -1;
         }
-        this.remember(seq, this.params);
+        if (session === null)
+            this.asked.delete(this.paramsSeq); // the followed session may have used this number, too
+        if (seq !== undefined)
+            this.remember(seq, this.params);
         this.emit('params');
         this.emit('following');
     },
