@@ -89,6 +89,7 @@ function ViewsPane(pane, context) {
     // the heading of a view whose picture has not arrived yet: until then, the heading must name the previous view, which is
     // still in the picture
     let due = null, isOpened = false;
+    let sender = null; // the part of the heading that byWhom() states; its text also changes at midnight
     const words = make('span', { class: 'said' }), about = make('span', { class: 'about' }), why = make('p', { class: 'why' });
     title.append(words, about);
     context.body.append(why);
@@ -96,7 +97,7 @@ function ViewsPane(pane, context) {
     // Returns a text that names the user who sent the view to the pane or holds the pane on it, and the time since then.
     function byWhom({ desk, by, held, time_us: us }) {
         const who = [desk, by].filter(Boolean).join(', '), time = timeOf(session, us);
-        return make('i', {}, say(held ? 'walls.held' : 'walls.sent', { who, time }));
+        return say(held ? 'walls.held' : 'walls.sent', { who, time });
     }
 
     // Shows a view. wrong: names in the view that the plant does not have. The pane lists such names instead of the picture, because
@@ -118,8 +119,9 @@ function ViewsPane(pane, context) {
             });
         const known = viewsOf(page.session).some((view) => view.id === id);
         const own = known ? titleOf(id) : say('named.unknown', { id });
+        sender = order ? make('i', {}) : null;
         const said = !order && pane.stops?.[at].text;
-        due = [order?.view ? order.title : own, ...(said ? [make('span', {}, ` · ${said}`)] : []), ...(order ? [' ', byWhom(order)] : [])];
+        due = [order?.view ? order.title : own, ...(said ? [make('span', {}, ` · ${said}`)] : []), ...(order ? [' ', sender] : [])];
     }
 
     // Returns true if the picture shows the view that was opened last.
@@ -174,7 +176,7 @@ function ViewsPane(pane, context) {
         const { view, wrong, refusal } = viewsOf(page.session).find(({ id }) => id === pane.items[at]) ?? {};
         const { width, height } = page.session.size;
         const wanted = alarm ? `${alarm.tag.name}/${alarm.kind}/${isGone(alarm.state)}`
-            : JSON.stringify([at, order, order && timeOf(session, order.time_us), view, wrong, width, height]);
+            : JSON.stringify([at, order, view, wrong, width, height]);
         const unshown = alarm || order?.view || !wrong ? null : { wrong, refusal };
         element.classList.toggle('unshown', Boolean(unshown));
         element.classList.toggle('called', Boolean(alarm));
@@ -189,6 +191,8 @@ function ViewsPane(pane, context) {
             showAlarm(page, alarm);
         else if (isNew)
             showView(page, order, unshown);
+        if (order && sender)
+            setText(sender, byWhom(order));
         if (due && (unshown || hasArrived(page, now))) {
             words.replaceChildren(...due);
             due = null;
@@ -250,6 +254,9 @@ function AlarmsPane(pane, { session, call, title, body }) {
             say('walls.many', { count, worst: `${worst.tag.name} ${worst.kind.length > 2 ? say(`kind.${worst.kind}`) : worst.kind}` })),
         make('time', {}, timeOf(session, worst.raisedUs)));
 
+    // Returns today's date, on which the texts of times in all rows depend.
+    const today = () => zoneClock(session.model.plant.time_zone)(session.clockUs() / 1000).date;
+
     const isFull = () => body.scrollHeight > body.clientHeight + 1;
 
     // Shows as many rows as fit, and the number of alarms left out. brief() makes short rows, used if the normal rows do not
@@ -277,8 +284,8 @@ function AlarmsPane(pane, { session, call, title, body }) {
     return { tick() {
         const { alarms } = session.model, all = alarms.list(), flood = call.isFlood(all, session.clockUs());
         setText(about, ageOf(clock.now() - session.freshAt));
-        const { active, waiting } = alarms.counts(), now = JSON.stringify([flood, body.clientHeight, all.map((alarm) =>
-            [alarm.id, alarm.state, alarm.priority, timeOf(session, alarm.raisedUs), flood ? '' : nowText(session, alarm)])]);
+        const { active, waiting } = alarms.counts(), now = JSON.stringify([flood, body.clientHeight, today(), all.map((alarm) =>
+            [alarm.id, alarm.state, alarm.priority, alarm.raisedUs, flood ? '' : nowText(session, alarm)])]);
         if (now === said)
             return;
         said = now;

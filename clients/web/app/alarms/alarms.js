@@ -245,7 +245,8 @@ export class AlarmList {
     }
 
     fill(id, rows) {
-        return this.table.fill(byId(id), rows, (row) => JSON.stringify([this.today, row, rowActions(row, this.alarms.mode, this.role)],
+        const { today } = this;
+        return this.table.fill(byId(id), rows, (row) => JSON.stringify([today, row, rowActions(row, this.alarms.mode, this.role)],
             (key, value) => (key === 'tag' ? undefined : value)), (row) => this.draw(row));
     }
 

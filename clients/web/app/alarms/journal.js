@@ -138,8 +138,8 @@ export class Journal {
     show() {
         if (!this.isShown)
             return;
-        const passing = this.table.sorted(this.passing), all = this.rows.length;
-        this.drawn = this.table.fill(byId('journal-list'), passing.slice(0, this.shown), ({ id }) => `${id} ${this.list.today}`,
+        const passing = this.table.sorted(this.passing), all = this.rows.length, { today } = this.list;
+        this.drawn = this.table.fill(byId('journal-list'), passing.slice(0, this.shown), ({ id }) => `${id} ${today}`,
             (row) => this.draw(row));
         const changes = byId('journal-which');
         this.list.showApplied(passing.length, all, [...changes.value ? [changes.selectedOptions[0].text] : [], ...this.list.applied],
@@ -148,8 +148,9 @@ export class Journal {
         setText(this.more, say('alarms.more', { count: passing.length - this.shown }));
         const oldest = this.rows.at(-1), clock = zoneClock(this.zone);
         const at = oldest && clock(oldest.us / 1000);
-        setText(this.note, this.failed ?? (this.cut ? say('journal.cut', { count: passing.length, all, time: `${at.day} ${at.time}` })
-            : say('journal.count', { count: passing.length })));
+        const count = this.cut ? say('journal.cut', { count: passing.length, all, time: `${at.day} ${at.time}` })
+            : say('journal.count', { count: passing.length });
+        setText(this.note, [this.failed, (!this.failed || all > 0) && count].filter(Boolean).join(' · '));
         this.older.hidden = !this.cut;
     }
 
