@@ -228,7 +228,6 @@ static int legend_differs_px(enum look look)
     return count;
 }
 
-/* With the glossy look, values that a user reads from colours may be wrong. The legend must say so in two lines. */
 /* Returns the number of pixels in which a half's legend differs between two split frames whose halves have these errors. */
 static int legends_differ_px(int half, const double a[2], const double b[2])
 {
@@ -263,6 +262,7 @@ TEST(each_half_says_its_own_error)
     assert_int_equal(legends_differ_px(0, none, right), 0);
 }
 
+/* With the glossy look, values that a user reads from colours may be wrong. The legend must say so in two lines. */
 TEST(the_legend_says_glossy)
 {
     assert_int_equal(legend_differs_px(LOOK_FLAT), 0);
