@@ -112,6 +112,15 @@ struct field_layout *layout_create(const struct scene *scene, int asset, int gro
     return layout;
 }
 
+void layout_remove_ineffective(struct field_layout *layout, enum interpolation interpolation)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < layout->sensor_count; i++)
+        if (interpolation != INTERPOLATION_SHEPARD || layout->sensors[i].strength > 0)
+            layout->sensors[kept++] = layout->sensors[i];
+    layout->sensor_count = kept;
+}
+
 void layout_destroy(struct field_layout **layout_ptr)
 {
     struct field_layout *layout = *layout_ptr;

@@ -62,6 +62,8 @@ struct layout_point {
 /* Creates the layout of a group's sensors on an asset. trial: moved sensors; NULL: none. Scene and trial must outlive the
    layout. Returns NULL if no sensor of the group is on the asset. */
 struct field_layout *layout_create(const struct scene *scene, int asset, int group, const struct trial *trial);
+/* Removes the sensors that have no effect on the field: with the interpolation shepard, those of strength 0. */
+void layout_remove_ineffective(struct field_layout *layout, enum interpolation interpolation);
 /* Returns true if the trial (set of sensor positions that a user tries out) adds, removes or moves a sensor of this group on
    this asset. */
 bool layout_is_touched(const struct scene *scene, int asset, int group, const struct trial *trial);

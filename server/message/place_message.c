@@ -143,7 +143,7 @@ static void add_far(json_t *list, const struct plant *plant, int tag, int asset,
 }
 
 /* Lists the sensors of a group whose position is too far from their asset's surface, as JSON. For a sensor moved on trial, the
-   trial position counts. */
+   trial position counts; assumed positions do not. */
 static json_t *far_list(const struct scene *scene, const struct place_set *set, int group)
 {
     const struct placed *placed = NULL;
@@ -152,10 +152,11 @@ static json_t *far_list(const struct scene *scene, const struct place_set *set, 
     for (size_t a = 0; a < scene->asset_count; a++)
         for (size_t s = 0; s < scene->assets[a].sensor_count; s++) {
             const struct scene_sensor *sensor = &scene->assets[a].sensors[s];
+            const struct plant_tag *tag = &scene->plant->tags[sensor->tag];
             bool moved = false;
             for (size_t i = 0; i < count; i++)
                 moved |= placed[i].move.tag == sensor->tag;
-            if (!moved && scene->plant->tags[sensor->tag].group == group)
+            if (!moved && tag->group == group && !tag->place.assumed)
                 add_far(list, scene->plant, sensor->tag, (int)a, sensor->surface_distance_m, far_limit_m(&scene->assets[a]));
         }
     for (size_t i = 0; i < count; i++)
@@ -170,15 +171,18 @@ char *coverage_text(const struct scene *scene, const struct place_set *set, cons
     json_t *assets = json_array();
     for (size_t i = 0; i < answer->count; i++) {
         const struct sensor_coverage *coverage = &answer->assets[i].coverage;
+        json_t *said = json_pack("{s:s,s:i,s:b}", "asset", plant->assets[answer->assets[i].asset].id, "sensors", (int)coverage->sensors,
+                                 "assumed", coverage->assumed);
+        json_array_append_new(assets, said);
+        if (coverage->assumed)
+            continue;
         const int *pair = coverage->next_tags;
         json_t *next = pair[0] < 0 ? json_null() : json_pack("[s,s]", plant->tags[pair[0]].name, plant->tags[pair[1]].name);
-        json_t *said =
-            json_pack("{s:s,s:i,s:f,s:f,s:o}", "asset", plant->assets[answer->assets[i].asset].id, "sensors", (int)coverage->sensors,
-                      "far_m", coverage->far_m, "farthest_m", coverage->farthest_m, "farthest_at", vector(coverage->farthest_at_m));
+        json_object_update_new(said, json_pack("{s:f,s:f,s:o}", "far_m", coverage->far_m, "farthest_m", coverage->farthest_m, "farthest_at",
+                                               vector(coverage->farthest_at_m)));
         json_object_update_new(said, json_pack("{s:f,s:f,s:f,s:f,s:f,s:o}", "farthest_error_m", coverage->farthest_error_m, "far_share",
                                                coverage->far_share, "lost_share", coverage->lost_share, "unsure_share",
                                                coverage->unsure_share, "next_m", coverage->next_m, "next", next));
-        json_array_append_new(assets, said);
     }
     return json_text(json_pack("{s:s,s:I,s:s,s:o,s:o}", "type", "gaps", "seq", (json_int_t)answer->seq, "group",
                                plant->groups[answer->group].id, "far", far_list(scene, set, answer->group), "assets", assets),

@@ -456,8 +456,14 @@ bool sensor_coverage_find(const struct sensor_coverage_query *order, struct sens
     *out = (struct sensor_coverage){ .next_tags = { -1, -1 } };
     if (!layout)
         return false;
-    struct coverage_search search = { .query = order, .out = out, .size_m = size_of(asset) };
+    layout_remove_ineffective(layout, layout->group->interpolation);
     out->sensors = layout->sensor_count;
+    out->assumed = layout->assumed;
+    if (layout->assumed || layout->sensor_count == 0) {
+        layout_destroy(&layout);
+        return out->assumed;
+    }
+    struct coverage_search search = { .query = order, .out = out, .size_m = size_of(asset) };
     out->far_m = order->far_m > 0 ? order->far_m : isfinite(order->reach_m) ? order->reach_m / 2 : search.size_m / 5;
     bool found = search_init(&search, layout);
     if (found) {

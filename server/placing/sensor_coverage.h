@@ -22,7 +22,8 @@ struct sensor_coverage_query {
 };
 
 struct sensor_coverage {
-    size_t sensors;
+    size_t sensors; /* number of the group's sensors that affect the asset's field */
+    bool assumed;   /* true: the positions of all sensors are assumed, so the members below are not computed */
     double far_m; /* distance in metres from which points count as far: query->far_m or, if that is 0, the default */
     /* distance in metres between the surface point that is farthest from all sensors and its nearest sensor; ignores points
        that no path along the surface connects with a sensor */
@@ -39,7 +40,8 @@ struct sensor_coverage {
     int next_tags[2];        /* indices of the tags of the two sensors that are next_m apart; -1: none */
 };
 
-/* Computes the coverage of the asset by the group's sensors into *out. Returns false if the asset has no sensor of the group, or
+/* Computes the coverage of the asset by the group's sensors into *out. Sensors that have no effect on the field
+   (layout_remove_ineffective() in field/layout.h) do not count. Returns false if the asset has no other sensor of the group, or
    memory ran out. */
 bool sensor_coverage_find(const struct sensor_coverage_query *order, struct sensor_coverage *out);
 

@@ -7,6 +7,7 @@
 
 #include "base/math/vec.h"
 #include "base/mem.h"
+#include "message/place_message.h"
 #include "tests/support/sweep.h"
 #include "tests/support/toy.h"
 
@@ -128,6 +129,55 @@ TEST_ON(struct toy *toy, test_a_sensor_that_is_tried_out_counts, set_up, tear_do
     assert_int_equal(gaps.next_tags[0], -1);
     order.trial = NULL;
     assert_false(sensor_coverage_find(&order, &gaps));
+}
+
+/* Asserts that the message `gaps` about the plate is this text. */
+static void assert_message(const struct toy *toy, const struct sensor_coverage *gaps, const char *want)
+{
+    struct sensor_coverage_answer answer = { .seq = 6, .count = 1 };
+    answer.assets = mem_array(1, sizeof(*answer.assets));
+    answer.assets[0].coverage = *gaps;
+    char *text = coverage_text(&toy->scene, NULL, &answer);
+    assert_string_equal(text, want);
+    mem_free(text);
+    mem_free(answer.assets);
+}
+
+/* Distances from assumed positions would be wrong, so there are none. */
+TEST_ON(struct toy *toy, test_assumed_positions_have_no_distances, set_up, tear_down)
+{
+    for (int i = 0; i < SENSORS; i++)
+        toy->plant.tags[i].place.assumed = true;
+    toy->scene.assets[0].sensors[0].surface_distance_m = 3;
+    struct sensor_coverage gaps = find(toy, 1, 0, (uint8_t[SENSORS]){ 0, 1, 1 });
+    assert_true(gaps.assumed && gaps.sensors == SENSORS);
+    assert_true(gaps.farthest_m == 0 && gaps.far_share == 0 && gaps.lost_share == 0 && gaps.next_m == 0);
+    assert_message(toy, &gaps,
+                   "{\"type\":\"gaps\",\"seq\":6,\"group\":\"temperature\",\"far\":[],"
+                   "\"assets\":[{\"asset\":\"PLATE\",\"sensors\":3,\"assumed\":true}]}");
+    toy->plant.tags[0].place.assumed = false; /* the known position counts, and the assumed ones do not */
+    gaps = find(toy, INFINITY, 0, (uint8_t[SENSORS]){ 1, 1, 1 });
+    assert_true(!gaps.assumed && gaps.sensors == 1);
+    assert_true(fabs(gaps.farthest_m - 4 * sqrt(2)) < 1e-5);
+}
+
+/* With shepard, a sensor of strength 0 has no effect on the field, so it covers nothing. */
+TEST_ON(struct toy *toy, test_a_sensor_of_strength_0_covers_nothing, set_up, tear_down)
+{
+    toy->plant.tags[2].strength = 0;
+    struct sensor_coverage gaps = find(toy, 2, 0, (uint8_t[SENSORS]){ 1, 1, 1 });
+    print_message("farthest %.4f m, lost %.4f\n", gaps.farthest_m, gaps.lost_share);
+    assert_int_equal(gaps.sensors, 2);
+    assert_true(fabs(gaps.farthest_m - hypot(2, 4)) < 1e-3);
+    assert_true(fabs(gaps.lost_share - (1 - 2 * M_PI / 16)) < 1e-3); /* all but two quarters of a disc with a radius of 2 m */
+    assert_true(fabs(gaps.next_m - 4) < 1e-6);
+    toy->plant.groups[0].interpolation = INTERPOLATION_PAPER;
+    assert_int_equal(find(toy, 2, 0, (uint8_t[SENSORS]){ 1, 1, 1 }).sensors, SENSORS);
+    toy->plant.groups[0].interpolation = INTERPOLATION_SHEPARD;
+    toy->plant.tags[0].strength = toy->plant.tags[1].strength = 0;
+    assert_false(
+        sensor_coverage_find(&(struct sensor_coverage_query){ .scene = &toy->scene, .reach_m = 2, .good = (uint8_t[SENSORS]){ 1 } },
+                             &gaps));
 }
 
 /* --- large faces ------------------------------------------------------------------------------------------------------------- */

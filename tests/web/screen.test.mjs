@@ -3,6 +3,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { limitText } from '../../clients/web/app/alarms/alarm_bar.js';
+import { gapText } from '../../clients/web/app/engineer/placing.js';
 import { TrendTable } from '../../clients/web/app/trends/trend_table.js';
 import { readAddress, writeAddress } from '../../clients/web/core/address.js';
 import {
@@ -22,6 +23,7 @@ import { snapshotQuery } from '../../clients/web/core/query.js';
 import { hatchAt, patternPeriodPx, stippleAt } from '../../clients/web/core/patterns.js';
 import { LatencyMeter, RateMeter } from '../../clients/web/core/meters.js';
 import { learnWords } from '../../clients/web/core/words.js';
+import { vector } from './fixtures.mjs';
 
 test('decimals follow the range, zero has no minus sign, and a missing value is a dash', () => {
     assert.deepEqual([1000, 160, 16, 5, 0.02, 0, NaN].map(decimalsFor), [0, 1, 2, 2, 5, 2, 2]);
@@ -343,4 +345,13 @@ test('an invalid address counts as none', () => {
     for (const hash of senseless)
         assert.deepEqual(readAddress(hash), { camera: null, params: {}, tag: null, time: {} }, hash);
     assert.deepEqual(readAddress('#asset=E-101'), { camera: null, params: { selected: 'E-101' }, tag: null, time: {} });
+});
+
+test('sensor coverage of an asset: distances, or that the locations of its sensors are assumed', async () => {
+    await learnWords();
+    const { assets: [known, assumed] } = vector('server/gaps.json');
+    assert.equal(gapText(known), 'Largest distance to the nearest sensor: 4.50 m. 61 % of the surface is more than 1.25 m away; '
+        + '0 % has no data now.');
+    assert.match(gapText({ ...known, next: ['TI-1', 'TI-2'], next_m: 2 }), /now\. Most isolated sensor: TI-1, 2\.00 m from TI-2\.$/);
+    assert.equal(gapText(assumed), 'The locations of its sensors are assumed, so their distances are unknown.');
 });

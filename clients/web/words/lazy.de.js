@@ -634,6 +634,7 @@ save: Speichern …
 gaps.of: Messlücken: {quantity}
 gap: Größter Abstand zum nächsten Sensor: {metres} m. {far} % der Oberfläche sind über {limit} m entfernt; {lost} %
   haben jetzt keine Daten.
+gap.assumed: Die Orte der Sensoren sind angenommen, ihre Abstände daher unbekannt.
 gap.next: Am weitesten von anderen Sensoren entfernt: {a}, {metres} m von {b}.
 gap.off: {tag} liegt {metres} m neben der Oberfläche von {asset} (höchstens {limit} m)
 gap.none: Kein Sensor liegt neben der Oberfläche.

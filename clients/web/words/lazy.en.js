@@ -633,6 +633,7 @@ save: Save …
 gaps.of: Coverage gaps: {quantity}
 gap: Largest distance to the nearest sensor: {metres} m. {far} % of the surface is more than {limit} m away; {lost} %
   has no data now.
+gap.assumed: The locations of its sensors are assumed, so their distances are unknown.
 gap.next: Most isolated sensor: {a}, {metres} m from {b}.
 gap.off: {tag} is {metres} m off the surface of {asset} (at most {limit} m)
 gap.none: No sensor is off its surface.

@@ -625,6 +625,7 @@ save: 저장 …
 gaps.of: 감시 공백: {quantity}
 gap: 가장 가까운 센서까지 최대 {metres} m. 표면의 {far} %는 {limit} m보다 멀고, {lost} %는 지금
   데이터가 없습니다.
+gap.assumed: 센서 위치가 추정된 것이어서 센서와의 거리를 알 수 없습니다.
 gap.next: 다른 센서와 가장 떨어진 센서: {a}, {b}에서 {metres} m.
 gap.off: {tag}은(는) {asset} 표면에서 {metres} m 떨어져 있습니다 (최대 {limit} m)
 gap.none: 표면에서 벗어난 센서가 없습니다.

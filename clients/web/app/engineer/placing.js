@@ -15,6 +15,15 @@ const metres = (m) => numberText(m, m < 1 ? 3 : 2);
 const along = ({ along: state = 'waiting' } = {}) => say(`eng.${state}`);
 const percent = (share) => numberText(100 * share, share > 0 && share < 0.1 ? 1 : 0);
 
+// Returns the sentences about the sensor coverage of one asset, an element of `assets` in the message `gaps`.
+export function gapText(of) {
+    if (of.assumed)
+        return say('eng.gap.assumed');
+    const text = say('eng.gap', { metres: metres(of.farthest_m), far: percent(of.far_share), limit: metres(of.far_m),
+        lost: percent(of.lost_share) });
+    return of.next ? `${text} ${say('eng.gap.next', { a: of.next[0], b: of.next[1], metres: metres(of.next_m) })}` : text;
+}
+
 export class Placing {
     constructor({ session, viewport, overlay, selection, selectTag, showTag, refresh }) {
         Object.assign(this, { session, viewport, overlay, selection, selectTag, showTag, refresh });
@@ -220,10 +229,7 @@ export class Placing {
             ...(far.length > 0 ? far.map(([tag, asset, m, limit]) =>
                 make('p', { class: 'off' }, say('eng.gap.off', { tag, asset, metres: metres(m), limit: metres(limit) })))
                 : [make('p', {}, say('eng.gap.none'))]),
-            ...assets.map((of) => make('p', {}, make('b', {}, of.asset), ' ',
-                say('eng.gap', { metres: metres(of.farthest_m), far: percent(of.far_share), limit: metres(of.far_m),
-                    lost: percent(of.lost_share) }),
-                of.next ? ` ${say('eng.gap.next', { a: of.next[0], b: of.next[1], metres: metres(of.next_m) })}` : '')));
+            ...assets.map((of) => make('p', {}, make('b', {}, of.asset), ' ', gapText(of))));
     }
 
     // --- saving
