@@ -2,7 +2,7 @@
 /* Suggests positions for new sensors. The surface is represented by points: the vertices, and points inside large faces (triangles
    of the finest level of detail). Candidate positions are sorted by an upper bound of their gain. The bound uses
    straight-line distances, which are never longer than geodesic ones. So only the candidates with the highest bounds need
-   geodesic distances. */
+   geodesic distances, if the group uses these. */
 #include "placing/sensor_suggest.h"
 
 #include <math.h>
@@ -32,14 +32,14 @@ enum { MAX_POINTS = 100000 };
 
 struct suggest_asset { /* an asset on which sensors may be suggested */
     int asset;
-    struct field_layout *layout; /* sensors of the group */
+    struct field_layout *layout; /* sensors of the group that count in the view `show: blind` */
     struct layout_points inside; /* points inside faces */
     /* number of points that represent the surface: the asset's vertices, then the points inside faces */
     size_t count, vertex_count;
     float (*at_m)[3];
     double *area_m2, whole_m2;
     float *near_m;            /* by point: distance in metres to the nearest sensor, including suggested ones */
-    struct relocation *mover; /* computes geodesic distances on the asset; NULL: not needed yet */
+    struct relocation *mover; /* computes geodesic distances on the asset; NULL: not needed yet, or not at all (straight lines) */
 };
 
 struct candidate {
@@ -52,6 +52,7 @@ struct candidate {
 
 struct suggesting {
     const struct suggest_query *query;
+    enum distance_mode mode; /* distances of the view `show: blind` */
     double seen_m; /* distance in metres from a sensor within which a hot spot as strong as the group's full value range is detectable */
     struct suggest_asset *parts;
     size_t part_count;
@@ -164,7 +165,8 @@ static bool make_points(const struct suggesting *suggesting, struct suggest_asse
 }
 
 /* Lowers near_m, an array by point, to the distances from one sensor of the layout, where these are smaller. */
-static void take_nearest(const struct suggest_asset *part, const struct field_layout *layout, size_t sensor, float *near_m)
+static void take_nearest(const struct suggest_asset *part, const struct field_layout *layout, enum distance_mode mode, size_t sensor,
+                         float *near_m)
 {
     struct field_layout inside = *layout;
     float room[KERNEL_BLOCK];
@@ -174,7 +176,7 @@ static void take_nearest(const struct suggest_asset *part, const struct field_la
         size_t begin = is_vertex ? at : at - part->vertex_count;
         end = is_vertex ? part->vertex_count : part->count;
         count = end - at < KERNEL_BLOCK ? end - at : KERNEL_BLOCK;
-        kernel_nearest(layout_distances(is_vertex ? layout : &inside, DISTANCE_GEODESIC, sensor, begin, count, room), count, near_m + at);
+        kernel_nearest(layout_distances(is_vertex ? layout : &inside, mode, sensor, begin, count, room), count, near_m + at);
     }
 }
 
@@ -186,6 +188,9 @@ static bool add_part(struct suggesting *suggesting, int asset)
         layout_destroy(&layout);
         return true;
     }
+    /* the view `show: blind` replaces interpolations computed by plantcast-prep by shepard */
+    layout_remove_ineffective(layout, interpolation_is_prepared(layout->group->interpolation) ? INTERPOLATION_SHEPARD
+                                                                                              : layout->group->interpolation);
     struct suggest_asset *part = &suggesting->parts[suggesting->part_count++];
     *part = (struct suggest_asset){ .asset = asset, .layout = layout };
     if (!make_points(suggesting, part))
@@ -195,7 +200,7 @@ static bool add_part(struct suggesting *suggesting, int asset)
         part->whole_m2 += part->area_m2[p];
     }
     for (size_t i = 0; i < layout->sensor_count; i++)
-        take_nearest(part, layout, i, part->near_m);
+        take_nearest(part, layout, suggesting->mode, i, part->near_m);
     suggesting->whole_m2 += part->whole_m2;
     return true;
 }
@@ -279,7 +284,7 @@ static struct candidate *find_candidates(const struct suggesting *suggesting, si
     return list;
 }
 
-/* --- distances along the surface --------------------------------------------------------------------------------------------- */
+/* --- distances from a candidate ---------------------------------------------------------------------------------------------- */
 
 struct suggest_wait {
     pthread_mutex_t lock;
@@ -299,9 +304,9 @@ static void on_distances(void *arg, struct relocation_result *result)
     pthread_mutex_unlock(&waiting->lock);
 }
 
-/* Computes the distances along the surface from one point of an asset to all points that represent its surface. Returns an array
-   by point, which the caller frees (mem_free); NULL on failure. */
-static float *distances_from(const struct suggesting *suggesting, struct suggest_asset *part, size_t point)
+/* Computes the distances along the surface from one point of an asset to all vertices. Returns an array by vertex, which the
+   caller frees (mem_free); NULL on failure. */
+static float *geodesic_from(const struct suggesting *suggesting, struct suggest_asset *part, size_t point)
 {
     const struct suggest_query *query = suggesting->query;
     struct suggest_wait waiting = { .is_done = false };
@@ -318,17 +323,27 @@ static float *distances_from(const struct suggesting *suggesting, struct suggest
     }
     pthread_mutex_destroy(&waiting.lock);
     pthread_cond_destroy(&waiting.done);
-    float *away_m = waiting.result.status == RELOCATION_DONE ? mem_try_array(part->count, sizeof(*away_m)) : NULL;
+    return waiting.result.geodesic_m;
+}
+
+/* Computes the distances from one point of an asset to all points that represent its surface. Returns an array by point, which
+   the caller frees (mem_free); NULL on failure. */
+static float *distances_from(const struct suggesting *suggesting, struct suggest_asset *part, size_t point)
+{
+    const bool along = suggesting->mode != DISTANCE_EUCLIDEAN;
+    float *geodesic_m = along ? geodesic_from(suggesting, part, point) : NULL;
+    float *away_m = geodesic_m || !along ? mem_try_array(part->count, sizeof(*away_m)) : NULL;
     if (away_m) {
-        struct layout_sensor sensor = { .tried = true, .tried_m = waiting.result.geodesic_m };
+        struct layout_sensor sensor = { .tried = true, .tried_m = geodesic_m };
+        memcpy(sensor.surface_m, part->at_m[point], sizeof(sensor.surface_m));
         struct field_layout layout = *part->layout;
         layout.sensors = &sensor;
         layout.sensor_count = 1;
         for (size_t p = 0; p < part->count; p++)
             away_m[p] = INFINITY;
-        take_nearest(part, &layout, 0, away_m);
+        take_nearest(part, &layout, suggesting->mode, 0, away_m);
     }
-    mem_free(waiting.result.geodesic_m);
+    mem_free(geodesic_m);
     return away_m;
 }
 
@@ -372,7 +387,9 @@ static bool take_best(struct suggesting *suggesting, struct suggestion *out)
 size_t sensor_suggest(const struct suggest_query *query, struct suggestion *out)
 {
     const struct plant_group *group = &query->scene->plant->groups[query->group];
-    struct suggesting suggesting = { .query = query, .seen_m = group->hot_spot_m * sqrt(-2 * log(PLANT_SEEN_PART)) };
+    struct suggesting suggesting = { .query = query,
+                                     .mode = interpolation_is_prepared(group->interpolation) ? DISTANCE_GEODESIC : group->distance,
+                                     .seen_m = group->hot_spot_m * sqrt(-2 * log(PLANT_SEEN_PART)) };
     size_t made = 0;
     bool good = true;
     suggesting.parts = mem_array(query->scene->asset_count, sizeof(*suggesting.parts));

@@ -3,11 +3,11 @@
    the measure as much as possible. The measure says how hard hot spots are to detect. 0: there is a sensor everywhere; 1: even
    a hot spot as strong as the group's full value range is undetectable. The measure is the mean over the surface of ln(h / h0)
    / ln(1 / 0.05), capped at 1. h is the strength of the weakest hot spot that is detectable at a point (drawn by the view
-   option `show: blind`), and h0 that strength at a sensor. This greedy choice among the tested positions reaches at least 63 %
-   of the best set's gain (Nemhauser, Wolsey & Fisher, 1978). Points represent the surface: the vertices, and points inside large
-   triangles. Each point inside a triangle represents a piece with sides of at most a fifth of the distance at which h is the full
-   range. The pieces are larger if an asset would need more than 100,000 pieces. Call from one thread only; waits for worker
-   threads. */
+   option `show: blind`, which measures distances in the same way), and h0 that strength at a sensor. This greedy choice among
+   the tested positions reaches at least 63 % of the best set's gain (Nemhauser, Wolsey & Fisher, 1978). Points represent the
+   surface: the vertices, and points inside large triangles. Each point inside a triangle represents a piece with sides of at
+   most a fifth of the distance at which h is the full range. The pieces are larger if an asset would need more than 100,000
+   pieces. Call from one thread only; waits for worker threads. */
 #ifndef PLACING_SENSOR_SUGGEST_H
 #define PLACING_SENSOR_SUGGEST_H
 #include "base/log/log.h"

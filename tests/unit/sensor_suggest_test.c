@@ -1,10 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Suggested positions of sensors on a plate of two triangles: they lie inside the triangles, and gain as much as those that a
-   brute-force search finds. tests/unit/influence_field_test.c tests suggestions on a fine mesh. */
+   brute-force search finds. Suggestions on two separate plates, measured like the view `show: blind`.
+   tests/unit/influence_field_test.c tests suggestions on a fine mesh. */
 #include "placing/sensor_suggest.h"
 
 #include "tests/support/test.h"
 
+#include "field/field.h"
+#include "protocol/asset_distance.h"
+#include "tests/support/whole_field.h"
 #include "tests/support/toy.h"
 
 enum { SENSORS = 4, GRID = 60 };
@@ -52,5 +56,71 @@ TEST(test_a_suggestion_lies_inside_a_large_triangle)
     unseen = 1 - M_PI * seen_m * seen_m / (long_m * wide_m);
     assert_true(fabs(found[0].unseen_before - unseen) < 0.02); /* all but four quarters of a disc */
     assert_true(found[1].after < found[0].after && found[1].before == found[0].after);
+    toy_destroy(&toy);
+}
+
+/* --- two separate plates ----------------------------------------------------------------------------------------------------- */
+
+enum { CELLS = 60 };
+static const double apart_m = 0.2, on_first[1][3] = { { 0.5, 0.5, 0 } };
+
+/* Returns one asset of two plates of 1 m², one above the other, with a sensor in the middle of the first one. No path along the
+   surface connects the plates. */
+static struct toy *plates_create(void)
+{
+    struct toy *toy = toy_create();
+    struct test_shape shape = { 0 };
+    for (int i = 0; i < 2; i++)
+        shape_plate(&shape, TOY_STEEL, (double[3]){ 0, 0, i * apart_m }, (double[3]){ 1, 0, 0 }, (double[3]){ 0, 1, 0 }, CELLS);
+    toy_add(toy, "PLATES", &shape, (double[3]){ 0, 0, 0 }, on_first, 1);
+    const struct asset_view *view = &toy->scene.assets[0].file->view;
+    for (size_t v = 0; v < view->header->vertex_count; v++)
+        if (view->positions_m[v][2] > 0.1f)
+            ((uint16_t *)asset_distance_codes(view, 0, v))[v % ASSET_DISTANCE_BLOCK] = ASSET_DISTANCE_NONE;
+    toy->plant.groups[0].hot_spot_m = 0.15;
+    return toy;
+}
+
+/* Returns the share of the vertices where `show: blind` shows the full range or more. */
+static double blind_share(const struct toy *toy, struct workers *workers)
+{
+    struct snapshot *snapshot = toy_snapshot(toy);
+    struct field *field = field_create(workers, &toy->scene);
+    struct field_params params = { 0 };
+    size_t hit = 0;
+    toy_set(snapshot, 0, 50, 0);
+    field_params_default(&toy->plant, 0, &params);
+    field_params_set_show(&toy->plant, &params, SHOW_BLIND);
+    const struct scalars *scalars = field_scalars(field, 0, &params, snapshot);
+    assert_non_null(scalars);
+    for (size_t v = 0; v < scalars->count; v++)
+        hit += scalars->at[v].value >= 100;
+    double share = (double)hit / (double)scalars->count;
+    field_destroy(&field);
+    snapshot_destroy(&snapshot);
+    return share;
+}
+
+TEST(test_distances_are_those_of_the_view_of_blind_spots)
+{
+    struct toy *toy = plates_create();
+    struct workers *workers = test_workers(1);
+    const struct suggest_query query = { test_log(), workers, &toy->scene, temp_folder(), 0, -1, 1 };
+    const double seen_m = 0.15 * sqrt(2 * log(20)), on_m2 = M_PI * seen_m * seen_m, beside_m2 = on_m2 - M_PI * apart_m * apart_m;
+    for (int straight = 0; straight < 2; straight++) {
+        struct suggestion found;
+        toy->plant.groups[0].distance = straight ? DISTANCE_EUCLIDEAN : DISTANCE_GEODESIC;
+        assert_int_equal(sensor_suggest(&query, &found), 1);
+        double blind = blind_share(toy, workers), unseen = 1 - (on_m2 + straight * beside_m2) / 2;
+        print_message("%s: unseen %.4f to %.4f, blind vertices %.4f, by hand %.4f\n", straight ? "straight" : "along", found.unseen_before,
+                      found.unseen_after, blind, unseen);
+        assert_true(fabs(found.unseen_before - unseen) < 0.01 && fabs(found.unseen_before - blind) < 0.02);
+        assert_true(found.unseen_after < found.unseen_before - 0.1);
+    }
+    /* a sensor of strength 0 has no effect on the field, so it detects nothing */
+    struct suggestion found;
+    toy->plant.tags[0].strength = 0;
+    assert_int_equal(sensor_suggest(&query, &found), 1);
+    assert_true(found.unseen_before > 1 - 1e-9 && found.unseen_after < 0.9);
     toy_destroy(&toy);
 }
