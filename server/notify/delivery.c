@@ -20,7 +20,7 @@ struct transfer {
     size_t bytes, at;
     char why[CURL_ERROR_SIZE];
     struct log *log;
-    int *refused;      /* counts refused mailboxes */
+    int refused_now;   /* number of mailboxes that the mail server refused during this transfer */
     bool in_data;      /* true: the last command of the SMTP dialogue was DATA, so a reply concerns the message itself */
     bool is_refused;   /* true: the mail server refused the message itself */
     const char *name;  /* id of the recipient in the plant file, for the log */
@@ -32,7 +32,7 @@ struct delivery {
     const struct plant_notify *notify;
     CURLM *multi;
     struct transfer *transfers; /* by recipient: its transfer */
-    int *refused_mailboxes;     /* by recipient: how often a mailbox was refused */
+    int *refused_mailboxes;     /* by recipient: how often a delivered mail was refused for a mailbox */
 };
 
 struct delivery *delivery_create(struct log *log, const struct plant_notify *notify)
@@ -97,10 +97,11 @@ static size_t drop_answer(char *bytes, size_t size, size_t count, void *arg)
     return size * count;
 }
 
-/* Returns true for replies to DATA and its text that will not change if the message is sent again: too large, or transaction failed. */
+/* Returns true for replies to DATA and its text that will not change if the message is sent again (RFC 5321, 4.3.2), such as 550
+   (policy), 552 (too large) and 554 (transaction failed). Replies 50x and 53x concern the commands and the login, not the message. */
 static bool refuses_message(const char *bytes, int length)
 {
-    return length >= 3 && (!strncmp(bytes, "552", 3) || !strncmp(bytes, "554", 3));
+    return length >= 3 && bytes[0] == '5' && bytes[1] != '0' && bytes[1] != '3';
 }
 
 /* Debug callback of libcurl. Logs when the mail server refuses a single mailbox: nothing else reports that, because the mail
@@ -123,7 +124,7 @@ static int hear_refusals(CURL *handle, curl_infotype type, char *bytes, size_t c
     else if (type == CURLINFO_HEADER_OUT)
         transfer->mailbox[0] = 0;
     else if (type == CURLINFO_HEADER_IN && transfer->mailbox[0] && length > 0 && (bytes[0] == '4' || bytes[0] == '5')) {
-        ++*transfer->refused;
+        transfer->refused_now++;
         log_warn(transfer->log, "notify: %s: the mail server refused %s: %.*s", transfer->name, transfer->mailbox, length, bytes);
     }
     return 0;
@@ -209,12 +210,7 @@ char *delivery_start(struct delivery *delivery, int recipient, char *body, size_
 {
     const struct notify_recipient *to = &delivery->notify->recipients[recipient];
     struct transfer *transfer = &delivery->transfers[recipient];
-    *transfer = (struct transfer){ .handle = curl_easy_init(),
-                                   .body = body,
-                                   .bytes = bytes,
-                                   .log = delivery->log,
-                                   .refused = &delivery->refused_mailboxes[recipient],
-                                   .name = to->id };
+    *transfer = (struct transfer){ .handle = curl_easy_init(), .body = body, .bytes = bytes, .log = delivery->log, .name = to->id };
     char *why = !transfer->handle          ? mem_strdup("out of memory")
                 : to->kind == NOTIFY_EMAIL ? set_mail(delivery, transfer, to)
                                            : set_http(delivery, transfer, to);
@@ -244,7 +240,8 @@ static char *why_not(const struct transfer *transfer, CURLcode code)
     return is_http && (status < 200 || status > 299) ? mem_printf("the server answered with HTTP status %ld", status) : NULL;
 }
 
-/* Returns true if the server refused the message itself: the mail server's reply to it, or an HTTP status that concerns its content. */
+/* Returns true if the server refused the message itself: the mail server's reply to it, or an HTTP status that concerns its content.
+   HTTP status 400 is not one: web servers also send it if the URL has http: instead of https:. */
 static bool is_refused(const struct transfer *transfer)
 {
     long status = 0;
@@ -252,7 +249,7 @@ static bool is_refused(const struct transfer *transfer)
     curl_easy_getinfo(transfer->handle, CURLINFO_RESPONSE_CODE, &status);
     curl_easy_getinfo(transfer->handle, CURLINFO_SCHEME, &scheme);
     bool is_http = scheme && !strncasecmp(scheme, "http", 4);
-    return is_http ? status == 400 || status == 413 || status == 422 : transfer->is_refused;
+    return is_http ? status == 413 || status == 422 : transfer->is_refused;
 }
 
 void delivery_wait(struct delivery *delivery, int timeout_ms, delivery_ended *each, void *arg)
@@ -269,6 +266,8 @@ void delivery_wait(struct delivery *delivery, int timeout_ms, delivery_ended *ea
         curl_easy_getinfo(message->easy_handle, CURLINFO_PRIVATE, (char **)&transfer);
         char *why = why_not(transfer, code);
         bool refused = why && is_refused(transfer);
+        if (!why)
+            delivery->refused_mailboxes[transfer - delivery->transfers] += transfer->refused_now;
         end_transfer(delivery, transfer);
         each(arg, (int)(transfer - delivery->transfers), why, refused);
         mem_free(why);

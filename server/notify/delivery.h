@@ -24,7 +24,7 @@ char *delivery_start(struct delivery *delivery, int recipient, char *body, size_
 typedef void delivery_ended(void *arg, int recipient, const char *why, bool is_refused);
 /* Waits up to timeout_ms for network activity, and calls each() for every message that was sent or failed. */
 void delivery_wait(struct delivery *delivery, int timeout_ms, delivery_ended *each, void *arg);
-/* Returns how often the mail server has refused a mailbox of the recipient so far. */
+/* Returns how often the mail server has refused a mailbox of the recipient. Counts only mails that it accepted for other mailboxes. */
 int delivery_refused_mailboxes(const struct delivery *delivery, int recipient);
 void delivery_wake(struct delivery *delivery); /* Makes delivery_wait() return. Call from any thread. */
 

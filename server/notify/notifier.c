@@ -20,6 +20,7 @@ enum { TICK_MS = 1000, REST_MS = 60000, FILE_BYTES = 64 << 20 };
 
 struct recipient_counters {
     counter *sent, *failed, *waiting, *mailboxes;
+    int mailboxes_before; /* value of delivery_refused_mailboxes() that `mailboxes` already includes */
 };
 
 struct notifier {
@@ -133,6 +134,7 @@ static void on_end(void *arg, int recipient, const char *why, bool is_refused)
     struct notifier *notifier = arg;
     struct log *log = notifier->params.log;
     const char *id = recipient_of(notifier, recipient)->id;
+    is_refused = is_refused && recipient_of(notifier, recipient)->kind != NOTIFY_ALERTMANAGER; /* the next message has all alarms anyway */
     if (why) {
         (is_refused ? outbox_refused : outbox_failed)(notifier->outbox, recipient, now_us());
         counter_inc(notifier->counters[recipient].failed, 1);
@@ -148,7 +150,8 @@ static void on_end(void *arg, int recipient, const char *why, bool is_refused)
         if (notifier->failing[recipient])
             log_info(log, "notify: %s accepts messages again", id);
     }
-    notifier->failing[recipient] = why != NULL;
+    if (!is_refused)
+        notifier->failing[recipient] = why != NULL;
 }
 
 /* Sends all due messages. Saves the outbox before sending a message, so that a restarted daemon repeats the same message
@@ -187,7 +190,9 @@ static void count(struct notifier *notifier)
 {
     for (int i = 0; i < (int)notifier->params.plant->notify->recipient_count; i++) {
         counter_set(notifier->counters[i].waiting, outbox_counts(notifier->outbox, i).waiting);
-        counter_set(notifier->counters[i].mailboxes, delivery_refused_mailboxes(notifier->delivery, i));
+        int mailboxes = delivery_refused_mailboxes(notifier->delivery, i);
+        counter_inc(notifier->counters[i].mailboxes, mailboxes - notifier->counters[i].mailboxes_before);
+        notifier->counters[i].mailboxes_before = mailboxes;
     }
     int64_t lost = outbox_counts(notifier->outbox, 0).lost;
     if (lost > notifier->lost_before) {
@@ -241,7 +246,7 @@ static void add_counters(struct notifier *notifier)
         notifier->counters[i].waiting =
             add_counter(notifier, "plantcast_notify_waiting", id, "gauge", "Alarms whose message waits for delivery, by recipient.");
         notifier->counters[i].mailboxes = add_counter(notifier, "plantcast_notify_mailboxes_refused_total", id, "counter",
-                                                      "Refusals of single mailboxes by the mail server, by recipient.");
+                                                      "Refusals of single mailboxes by a mail server that took the mail for others.");
     }
     notifier->lost = counters_add(counters, "plantcast_notify_lost_total", "counter",
                                   "Alarm messages lost: not stored, refused, or not delivered within a day.");

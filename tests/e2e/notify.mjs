@@ -184,14 +184,14 @@ notify:
     }
 });
 
-test('a webhook that redirects counts as failed and is retried', options, async () => {
-    const hook = Object.assign(new HookServer(), { status: 302 });
-    await hook.listen();
+test('a webhook that redirects or answers 400, and an Alertmanager that refuses alarms, are retried', options, async () => {
+    const hook = Object.assign(new HookServer(), { status: 302 }), manager = Object.assign(new HookServer(), { status: 422 });
+    await Promise.all([hook.listen(), manager.listen()]);
     const plant = await createPlant(`alarms: local
 notify:
   gather_s: 1
-  recipients: [{ id: hook, webhook: "http://127.0.0.1:${hook.port}/" }]
-  rules: [{ id: all, to: hook }]
+  recipients: [{ id: hook, webhook: "http://127.0.0.1:${hook.port}/" }, { id: am, alertmanager: "http://127.0.0.1:${manager.port}" }]
+  rules: [{ id: all, to: [hook, am] }]
 `, 1);
     try {
         await calm(plant, 1);
@@ -199,11 +199,19 @@ notify:
         await isCalm(plant);
         await set(plant, 'X-0', limits.high);
         await until('a failure', async () => await plant.metric('plantcast_notify_failed_total{recipient="hook"}') >= 1);
+        hook.status = 400;
+        await until('an answer 400', () => hook.posts.some(({ status }) => status === 400));
+        const failures = () => plant.metric('plantcast_notify_failed_total{recipient="hook"}');
+        await until('it is counted', async () => await failures() >= hook.posts.length);
         assert.equal(await plant.metric('plantcast_notify_waiting{recipient="hook"}'), 1);
         hook.status = 200;
         await until('that it is told', () => hook.taken.length > 0);
+        await until('Alertmanager is tried again', () => manager.posts.length > 1);
+        assert.equal(plant.daemon.said.match(/notify: am cannot be reached/g)?.length, 1);
+        assert.doesNotMatch(plant.daemon.said, /am refuses a message/);
+        assert.equal(await plant.metric('plantcast_notify_lost_total'), 0);
     } finally {
-        await hook.close();
+        await Promise.all([hook.close(), manager.close()]);
         await plant.destroy();
     }
 });
@@ -250,9 +258,10 @@ notify:
   gather_s: 0
   pause_s: 0
   mail: { server: "smtps://localhost:${port}", from: plant@p.example, ca_file: mail.pem }
-  recipients: [{ id: ops, email: ops@p.example }]
+  recipients: [{ id: ops, email: [ops@p.example, gone@p.example] }]
   rules: [{ id: all, to: ops }]
 `), mail = Object.assign(new MailServer(plant.folder), { mode: 'content' });
+    const refusals = () => plant.metric('plantcast_notify_mailboxes_refused_total{recipient="ops"}');
     try {
         await mail.listen(port);
         await calm(plant);
@@ -260,11 +269,19 @@ notify:
         await isCalm(plant);
         await set(plant, 'TI-1', limits.high);
         await until('it is dropped', async () => await plant.metric('plantcast_notify_lost_total') === 1);
-        mail.mode = 'take';
+        mail.mode = 'later';
         await set(plant, 'TI-2', limits.high);
+        const failed = await plant.metric('plantcast_notify_failed_total{recipient="ops"}');
+        await until('a retry', async () => await plant.metric('plantcast_notify_failed_total{recipient="ops"}') > failed);
+        assert.equal(await refusals(), 0, 'a mail that is sent again counts once, when the mail server takes it');
+        mail.mode = 'take';
         await until('a later mail', () => mail.mails.length > 0);
         assert.match(mail.mails[0].body, /TI-2 high[^]*\n1 more alarms are not listed/);
         assert.doesNotMatch(mail.mails[0].body, /TI-1/);
+        await until('the refused mailbox counts', async () => await refusals() === 1);
+        assert.equal((await fetch(`http://127.0.0.1:${plant.port}/api/v1/reload`, { method: 'POST' })).status, 200);
+        await set(plant, 'PI-1', limits.high);
+        await until('the count goes on after a reload', async () => await refusals() === 2);
     } finally {
         await mail.close();
         await plant.destroy();

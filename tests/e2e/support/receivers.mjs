@@ -10,8 +10,8 @@ import { createSecureContext, TLSSocket } from 'node:tls';
 import { freePort } from './ports.mjs';
 
 // A mail server that implements only the part of RFC 5321 that one message needs. mode: 'take', 'hang' (never answers),
-// 'refuse' (550 to every recipient), 'busy' (451), 'content' (554 to every text). starttls true: TLS starts on request, and no
-// mail is accepted before; false: TLS from the first byte.
+// 'refuse' (550 to every recipient), 'busy' (451), 'content' (550 to every text), 'later' (451 to every text).
+// starttls true: TLS starts on request, and no mail is accepted before; false: TLS from the first byte.
 export class MailServer {
     constructor(folder, { starttls = false, user = null, password = null } = {}) {
         Object.assign(this, { starttls, user, password, mode: 'take', mails: [], tried: 0, sockets: new Set() });
@@ -103,8 +103,8 @@ export class MailServer {
                     continue;
                 }
                 inData = false;
-                if (this.mode === 'content') {
-                    say('554 5.6.0 content refused');
+                if (['content', 'later'].includes(this.mode)) {
+                    say(this.mode === 'content' ? '550 5.7.1 content refused' : '451 later');
                     continue;
                 }
                 this.mails.push({ ...mail, ...readMail(part) });
