@@ -200,19 +200,31 @@ test('models outside of the plant\'s folder are in a backup without secrets; oth
         echo png >tile.png && echo key >a.password
         echo '{"buffers": [{"uri": "teil%202.bin"}], "images": [{"uri": "../tile.png"}, {"uri": "data:image/png;base64,AA=="}]}' \\
             >'Halle süd/b.gltf'
-        echo glb >v2.glb && ln -s v2.glb newest.glb && echo glb >/srv/linked/c.glb && ln -s /srv/linked ${ETC}/linked
-        echo 'MODELS="/srv/cad/newest.glb /srv/cad/a.password"' >>${ETC}/options
+        mkdir now && echo glb >v2.glb && ln -s ../v2.glb now/a.glb && ln -s now/a.glb newest.glb && ln -s now today
+        ln -s /srv/cad/v2.glb /etc/plantcast/above.glb && echo glb >/srv/linked/c.glb && ln -s /srv/linked ${ETC}/linked
+        mkdir /srv/live /srv/archive
+        for file in fullchain privkey; do
+            mv ${ETC}/tls/$file.pem /srv/archive/$file-1.pem
+            ln -s ../archive/$file-1.pem /srv/live/$file.pem && ln -s /srv/live/$file.pem ${ETC}/tls/$file.pem
+        done
+        echo 'MODELS="/srv/cad/newest.glb /srv/cad/today/a.glb ../above.glb /srv/cad/a.password"' >>${ETC}/options
         echo "  x: { model: /srv/cad/Halle süd/Kessel 1.glb, y: 1 }
           model: /srv/cad/Halle süd/b.gltf  # comment" >>${ETC}/options`));
     ok(host.run('plantcast backup p1 --without-secrets -o /root/b'));
     const names = ok(host.run('tar --quoting-style=literal -tf /root/b/etc.tar')).split('\n');
     for (const name of ['Halle süd/Kessel 1.glb', 'Halle süd/b.gltf', 'Halle süd/teil 2.bin', 'tile.png', 'newest.glb', 'v2.glb'])
         assert.ok(names.includes(`srv/cad/${name}`), `${name} is not in ${names.join(', ')}`);
-    assert.ok(names.includes('srv/linked/c.glb') && !names.some((name) => /password|tokens/.test(name)), names.join(', '));
-    ok(host.run('rm -r /etc/plantcast /var/lib/plantcast /srv/cad /srv/linked'));
+    assert.ok(names.includes('srv/linked/c.glb') && !names.some((name) => /password|tokens|\.pem/.test(name)), names.join(', '));
+    ok(host.run(`plantcast backup p1 --recipient ${recipient} -o /root/c; rm -r /etc/plantcast /var/lib/plantcast /srv/*`));
     const out = ok(host.run('plantcast restore /root/b'));
     assert.match(out, /systemctl enable --now plantcastd@p1 plantcast-backup@p1\.timer/);
-    assert.equal(ok(host.run(`cat '/srv/cad/Halle süd/teil 2.bin' /srv/cad/newest.glb ${ETC}/linked/c.glb`)), 'bin\nglb\nglb\n');
+    assert.equal(ok(host.run(`cat '/srv/cad/Halle süd/teil 2.bin' /srv/cad/newest.glb /srv/cad/today/a.glb /etc/plantcast/above.glb ` +
+        `${ETC}/linked/c.glb`)), 'bin\nglb\nglb\nglb\nglb\n');
+    assert.match(ok(host.run('plantcast init p1')), /^engineer +pc_/m, 'links to the lost certificate are not in the way');
+    ok(host.run('rm -r /etc/plantcast /var/lib/plantcast /srv/*'));
+    host.write('/root/key', readFileSync(first.path('root/key')), 0o600);
+    ok(host.run('plantcast restore /root/c --identity /root/key'));
+    assert.match(ok(host.run(`readlink /srv/live/privkey.pem && cat ${ETC}/tls/privkey.pem`)), /^\.\.\/archive[^]*PRIVATE KEY/);
 });
 
 test('backup and restore work with a passphrase typed at age\'s prompt, and a wrong one restores nothing',
