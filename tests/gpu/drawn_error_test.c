@@ -5,6 +5,7 @@
 #include "tests/support/test.h"
 #include <unistd.h>
 
+#include "message/marker_text.h"
 #include "render/pick/pick.h"
 #include "scene/scene_create.h"
 #include "tests/support/planned.h"
@@ -665,6 +666,34 @@ static void stand_on_uneven_plate(struct stand *stand, struct view *view)
     view->field.distance = DISTANCE_GEODESIC;
     for (int i = 0; i < MANY; i++)
         toy_set(stand->snapshot, i, i % 2 ? 90 : 10, QUALITY_GOOD);
+}
+
+/* Each half of a split view states its own error, and the message `markers` names the half. */
+TEST(test_halves_state_errors_of_their_own)
+{
+    struct stand stand;
+    struct view right, view;
+    struct known_markers known = { 0 };
+    struct marker_text_cache lists = { 0 };
+    stand_on_uneven_plate(&stand, &right);
+    view = right;
+    view.field.distance = DISTANCE_EUCLIDEAN;
+    for (int split = 1; split >= 0; split--) {
+        view.split = false;
+        if (split)
+            view_split(&view, &right);
+        struct frame *frame = stand_draw(&stand, &view);
+        assert_true(frame->drawn_error[0] == 0 && (split ? frame->drawn_error[1] > 0 : frame->drawn_error[1] == 0));
+        char *text = marker_text(frame, 1, &known, &lists);
+        assert_null(strstr(text, "\"drawn_error\""));
+        assert_non_null(strstr(text, "\"drawn_error_right\":"));
+        assert_int_equal(!strstr(text, "\"drawn_error_right\":0}"), split);
+        mem_free(text);
+        frame_unref(&frame);
+    }
+    marker_text_cache_finish(&lists);
+    known_markers_finish(&known);
+    stand_finish(&stand);
 }
 
 /* If memory runs out while errors are measured, pictures and picks mark the whole asset. */
