@@ -184,7 +184,7 @@ static const char *type_of(const char *type)
     } types[] = {
         { "", " default " },
         { "String", " text char wchar wstring datetime texttag8bitcharacterset texttag16bitcharacterset " },
-        { "Boolean", " bool bit discrete binarytag binarevariable " },
+        { "Boolean", " bool bit discrete digital ebool di do binarytag binarevariable " },
         { "Short", " int int1 int2 int16 i16 signed16bitvalue vorzeichenbehafteter16bitwert " },
         { "Word", " uint ushort u16 unsigned16bitvalue vorzeichenloser16bitwert " },
         { "Long", " dint integer int4 int32 i32 signed32bitvalue vorzeichenbehafteter32bitwert " },

@@ -131,6 +131,10 @@ TEST(test_types)
         { "400001.3", "Binary Tag", "Boolean" },
         { "000001", "Bool", "Boolean" },
         { "000001", "Word", "" }, /* a coil has one bit, whatever its type in the export */
+        { "000001", "Digital", "Boolean" },
+        { "100005", "EBOOL", "Boolean" },
+        { "400001.3", "DI", "Boolean" },
+        { "400001", "DO", NULL },
         { "000001", "F99", "" },
         { "400001.3", "F99", "" },
         { "400001", "Boolean", NULL },
