@@ -9,6 +9,7 @@
 
 #include "base/mem.h"
 #include "plant/plant_impl.h"
+#include "plant/tags/expression.h"
 
 static void __attribute__((format(printf, 2, 3))) say(struct plant_diff *diff, const char *fmt, ...)
 {
@@ -118,6 +119,26 @@ bool plant_same_signal(const struct plant *before, const struct plant_tag *a, co
 {
     return same_text(source_of(before, a), source_of(after, b)) && same_address(before, a, after, b) && same_scale(&a->scale, &b->scale) &&
            same_unit(a, b);
+}
+
+static bool keeps_signal(const struct plant *before, const struct plant *after, const struct plant_tag *tag, const bool *kept)
+{
+    int was = plant_find_tag(before, tag->name);
+    const int *inputs = NULL;
+    size_t count = tag->expression ? expression_inputs(tag->expression, &inputs) : 0;
+    bool keeps = was >= 0 && plant_same_signal(before, &before->tags[was], after, tag);
+    for (size_t i = 0; keeps && i < count; i++)
+        keeps = kept[inputs[i]];
+    return keeps;
+}
+
+void plant_kept_signals(const struct plant *before, const struct plant *after, bool *kept)
+{
+    for (size_t i = 0; i < after->tag_count; i++)
+        if (!after->tags[i].expression)
+            kept[i] = keeps_signal(before, after, &after->tags[i], kept);
+    for (size_t i = 0; i < after->derived_count; i++)
+        kept[after->derived[i]] = keeps_signal(before, after, &after->tags[after->derived[i]], kept);
 }
 
 static bool same_settings(const struct plant_alarm_settings *a, const struct plant_alarm_settings *b)
