@@ -9,7 +9,6 @@
 
 #include "base/mem.h"
 #include "plant/plant_diff.h"
-#include "plant/tags/expression.h"
 #include "value/quality.h"
 
 struct held {
@@ -123,27 +122,10 @@ static int find_source(const struct plant *plant, const char *id)
     return i;
 }
 
-/* Returns true if the tag's reading in the old plant's store is also one in the new plant: the tag gets its values in the same way
-   and, if it is derived, so do the tags in its expression. adopted: by tag: true: the tag's reading has been adopted. */
-static bool keeps_reading(const struct store *store, const struct store *before, size_t tag, const bool *adopted)
-{
-    const struct plant_tag *now = &store->plant->tags[tag];
-    int was = plant_find_tag(before->plant, now->name);
-    const int *inputs = NULL;
-    size_t count = now->expression ? expression_inputs(now->expression, &inputs) : 0;
-    bool keeps = was >= 0 && plant_same_signal(before->plant, &before->plant->tags[was], store->plant, now);
-    for (size_t i = 0; keeps && i < count; i++)
-        keeps = adopted[inputs[i]];
-    return keeps;
-}
-
-static void adopt_tag(struct store *store, const struct store *before, size_t tag, bool *adopted)
+static void adopt_tag(struct store *store, const struct store *before, size_t tag)
 {
     struct held *to = &store->tags[tag];
     const struct held own = *to;
-    adopted[tag] = keeps_reading(store, before, tag, adopted);
-    if (!adopted[tag])
-        return;
     *to = before->tags[plant_find_tag(before->plant, store->plant->tags[tag].name)];
     to->carried = true;
     /* does not take over the alarm of the old reading: limits may have changed, and the alarm service sets the alarm again */
@@ -158,14 +140,13 @@ static void adopt_tag(struct store *store, const struct store *before, size_t ta
 void store_adopt(struct store *store, struct store *before)
 {
     const struct plant *plant = store->plant;
-    bool *adopted = mem_array(plant->tag_count, sizeof(*adopted));
+    bool *kept = mem_array(plant->tag_count, sizeof(*kept));
+    plant_kept_signals(before->plant, plant, kept);
     pthread_mutex_lock(&before->lock);
     pthread_mutex_lock(&store->lock);
     for (size_t i = 0; i < plant->tag_count; i++)
-        if (!plant->tags[i].expression)
-            adopt_tag(store, before, i, adopted);
-    for (size_t i = 0; i < plant->derived_count; i++)
-        adopt_tag(store, before, (size_t)plant->derived[i], adopted);
+        if (kept[i])
+            adopt_tag(store, before, i);
     for (size_t i = 0; i < before->plant->source_count; i++) {
         int source = find_source(store->plant, before->plant->sources[i].id);
         if (source >= 0)
@@ -175,7 +156,7 @@ void store_adopt(struct store *store, struct store *before)
     store->has_utc = before->has_utc;
     pthread_mutex_unlock(&store->lock);
     pthread_mutex_unlock(&before->lock);
-    mem_free(adopted);
+    mem_free(kept);
 }
 
 static void listen(struct store *store, store_listener *listener, void *arg, bool all)
@@ -398,6 +379,13 @@ void store_mirror(struct store *store, const struct mirrored *readings, size_t c
     pthread_mutex_unlock(&store->lock);
 }
 
+/* Tells the listeners about a quality that changed without a sample. */
+static void tell_change(struct store *store, size_t tag, int64_t now_mono_ns)
+{
+    if (count_change(store, tag, false, now_mono_ns) && store->has_utc)
+        tell(store, tag, store->tags[tag].shown_quality, now_mono_ns, now_mono_ns + store->utc_ahead_ns);
+}
+
 static void lose(struct store *store, size_t tag, bool dead, int64_t now_mono_ns)
 {
     struct held *held = &store->tags[tag];
@@ -408,8 +396,7 @@ static void lose(struct store *store, size_t tag, bool dead, int64_t now_mono_ns
         tell_watch(store);
     held->lost = true;
     held->dead |= dead;
-    if (count_change(store, tag, false, now_mono_ns) && store->has_utc)
-        tell(store, tag, held->shown_quality, now_mono_ns, now_mono_ns + store->utc_ahead_ns);
+    tell_change(store, tag, now_mono_ns);
 }
 
 void store_tags_lost(struct store *store, const int *tags, size_t count, int64_t now_mono_ns)
@@ -428,12 +415,26 @@ void store_tags_dead(struct store *store, const int *tags, size_t count, int64_t
     pthread_mutex_unlock(&store->lock);
 }
 
+/* Makes a Good reading Uncertain. It still shows that its device answers, so that a device of which other tags are Bad does not
+   count as failed. */
+static void doubt(struct store *store, size_t tag, int64_t now_mono_ns)
+{
+    struct held *held = &store->tags[tag];
+    if (now_mono_ns < held->sampled_mono_ns || !quality_is_good(held->quality))
+        return;
+    held->quality = QUALITY_UNCERTAIN_LAST_USABLE;
+    tell_watch(store); /* also if the tag's own quality stays the same, for the same reason as in lose() */
+    tell_change(store, tag, now_mono_ns);
+}
+
 void store_values_missed(struct store *store, const int *tags, size_t count, bool dead, int64_t now_mono_ns)
 {
     pthread_mutex_lock(&store->lock);
     for (size_t i = 0; i < count; i++)
-        if (store->tags[tags[i]].has_value)
-            lose(store, (size_t)tags[i], dead, now_mono_ns);
+        if (store->tags[tags[i]].has_value && dead)
+            lose(store, (size_t)tags[i], true, now_mono_ns);
+        else if (store->tags[tags[i]].has_value)
+            doubt(store, (size_t)tags[i], now_mono_ns);
     pthread_mutex_unlock(&store->lock);
 }
 

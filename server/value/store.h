@@ -68,7 +68,7 @@ struct mirrored {
 /* Writes readings of a core (daemon that reads the devices) instead of samples. Their quality is the core's, and does not
    change as they get older. Listeners are not called. store_link_lost(), store_tags_lost() and store_tags_dead() apply to such
    readings too. Once this daemon has taken over from the core, a tag's first sample from this daemon's own source replaces the
-   core's reading, even if the sample is older; the reading becomes stale again. */
+   core's reading, even if the sample is older. Afterwards, the tag's `Stale s` and `Flatline s` apply. */
 void store_mirror(struct store *store, const struct mirrored *readings, size_t count, int64_t now_mono_ns);
 /* Records that a source cannot be read from now on. Its tags keep their last values: Uncertain_NoCommunicationLastUsableValue until
    stale_s after their arrival, then Bad_CommunicationError. Tags that never had a value are Bad_NoCommunication. */
@@ -78,8 +78,9 @@ void store_link_lost(struct store *store, int source, int64_t now_mono_ns);
 void store_tags_lost(struct store *store, const int *tags, size_t count, int64_t now_mono_ns);
 /* Makes some tags Bad_CommunicationError immediately, even if their last values are recent, because these values must no longer be used. */
 void store_tags_dead(struct store *store, const int *tags, size_t count, int64_t now_mono_ns);
-/* Records that newer values of some tags may have been missed. Their last values become Bad as after store_tags_dead() if `dead` is
-   set, otherwise Uncertain as after store_tags_lost(). Tags without a value do not change. */
+/* Records that newer values of some tags may have been missed, although their source can be read. Their last values become Bad as
+   after store_tags_dead() if `dead` is set; otherwise, Good values become Uncertain_LastUsableValue, and Bad stale_s after
+   their arrival. Tags without a value do not change. */
 void store_values_missed(struct store *store, const int *tags, size_t count, bool dead, int64_t now_mono_ns);
 /* Records that a source can be read again. Each of its tags is usable again from its next sample on. */
 void store_link_up(struct store *store, int source, int64_t now_mono_ns);

@@ -367,8 +367,7 @@ CASE(missed_values_make_the_last_ones_unusable)
         set_up_again(s);
         write_one(s, 0, 7, QUALITY_GOOD, 10 * S);
         store_values_missed(s->store, (int[]){ 0, 1 }, 2, dead, 11 * S);
-        assert_quality(look(s, 0, 11 * S)->quality,
-                       dead ? QUALITY_BAD_COMMUNICATION_ERROR : QUALITY_UNCERTAIN_NO_COMMUNICATION_LAST_USABLE);
+        assert_quality(look(s, 0, 11 * S)->quality, dead ? QUALITY_BAD_COMMUNICATION_ERROR : QUALITY_UNCERTAIN_LAST_USABLE);
         assert_quality(look(s, 0, 15 * S)->quality, QUALITY_BAD_COMMUNICATION_ERROR);
         assert_quality(look(s, 1, 11 * S)->quality, QUALITY_BAD_WAITING);
         write_one(s, 0, 8, QUALITY_GOOD, 12 * S);

@@ -50,20 +50,19 @@ static void on_subscribed(void *arg)
 }
 
 /* Marks the readings that the store has from before this source's first connection: from before a reload, or from a core. Newer
-   messages may have been missed since, unless the broker kept them. Sparkplug readings become Bad, because they are valid only
-   after a birth certificate; other readings become Uncertain until their next value, or until they are stale. */
-static void note_missed(struct mqtt_source *mqtt, bool session_present)
+   messages may have been missed since, even with a persistent session: the broker keeps no messages that were published with
+   QoS 0. Sparkplug readings become Bad, because they are valid only after a birth certificate; other readings become
+   Uncertain until their next value, or until they are stale. */
+static void note_missed(struct mqtt_source *mqtt)
 {
-    bool kept = session_present && mqtt->base.config->mqtt.qos > 0;
-    if (mqtt->sparkplug || !kept)
-        store_values_missed(mqtt->base.store, mqtt->topics.tags, mqtt->topics.tag_count, mqtt->sparkplug != NULL, clock_mono_ns());
+    store_values_missed(mqtt->base.store, mqtt->topics.tags, mqtt->topics.tag_count, mqtt->sparkplug != NULL, clock_mono_ns());
 }
 
 static void on_connected(void *arg, bool session_present)
 {
     struct mqtt_source *mqtt = arg;
     counter_inc(mqtt->connects, 1);
-    note_missed(mqtt, session_present);
+    note_missed(mqtt);
     log_debug(mqtt->base.log, "source %s: connected, %s session", mqtt->base.config->id, session_present ? "the earlier" : "a new");
     mqtt_client_subscribe(mqtt->client, mqtt->subscriptions, mqtt->subscription_count);
     if (mqtt->subscription_count == 0)
