@@ -45,7 +45,7 @@ static const int64_t REPEAT_US = 10 * US_PER_S;
 
 struct loss { /* samples that could not be recorded because too many waited */
     size_t count;
-    int64_t from_us, to_us; /* UTC times of the first and the last lost sample */
+    int64_t from_us, to_us; /* UTC times between which the lost samples arrived; their own times may be far older */
 };
 
 struct historian_queue {
@@ -98,9 +98,10 @@ struct historian {
 
 static void add_loss(struct loss *loss, const struct loss *more)
 {
-    if (!loss->count)
+    if (!loss->count || more->from_us < loss->from_us)
         loss->from_us = more->from_us;
-    loss->to_us = more->to_us;
+    if (!loss->count || more->to_us > loss->to_us)
+        loss->to_us = more->to_us;
     loss->count += more->count;
 }
 
@@ -114,7 +115,8 @@ static void queue_samples(struct historian *historian, const struct sample_event
         memcpy(queue->at + queue->count, samples, count * sizeof(*samples));
         queue->count += count;
     } else {
-        add_loss(&queue->loss, &(struct loss){ count, samples[0].utc_ns / 1000, samples[count - 1].utc_ns / 1000 });
+        int64_t now_us = clock_utc_ns() / 1000;
+        add_loss(&queue->loss, &(struct loss){ count, now_us, now_us });
     }
     pthread_mutex_unlock(&historian->thread.lock);
 }
@@ -172,7 +174,9 @@ static void put(struct historian *historian, int tag, const struct history_point
 {
     size_t before = historian->waiting.count;
     if (before >= historian->max_waiting) {
-        lose(historian, &(struct loss){ 1, point->t_us, point->t_us });
+        int64_t now_us = clock_utc_ns() / 1000;
+        /* the sample arrived since the last tick */
+        lose(historian, &(struct loss){ 1, now_us - TICK_NS / 1000, now_us });
         return;
     }
     recorder_put(historian->recorder, tag, point, &historian->waiting);
@@ -591,26 +595,35 @@ static void end_lines(struct historian *historian, int64_t utc_ns)
 {
     if (!historian->next)
         return;
+    bool *kept = mem_array(historian->next->tag_count, sizeof(*kept));
+    plant_kept_signals(historian->plant, historian->next, kept);
     for (size_t i = 0; i < historian->plant->tag_count; i++) {
-        const struct plant_tag *tag = &historian->plant->tags[i];
-        int next = plant_find_tag(historian->next, tag->name);
-        if (next < 0 || !plant_same_signal(historian->plant, tag, historian->next, &historian->next->tags[next]))
+        int next = plant_find_tag(historian->next, historian->plant->tags[i].name);
+        if (next < 0 || !kept[next])
             put(historian, (int)i, &(struct history_point){ utc_ns / 1000, NAN, QUALITY_BAD_NO_COMMUNICATION });
     }
+    mem_free(kept);
     recorder_end(historian->recorder, &historian->waiting);
 }
 
-/* Call once points can be recorded again after samples were lost. Ends every tag's line just before the first lost sample, so that
-   no value is known for that time, and notes the gap. The added points may exceed max_waiting by one for each tag. */
+/* Call once points can be recorded again after samples were lost. Ends every tag's line when the first lost sample arrived, but not
+   before the tag's newest recorded sample, so that no value is known for the time of the loss. Notes the gap. The following
+   take_qualities() then records all present readings that are not Bad. The added points may exceed max_waiting by one for each
+   tag. */
 static void end_loss(struct historian *historian)
 {
     const struct loss loss = historian->loss;
     struct history_point newest;
     historian->loss.count = 0;
-    for (size_t i = 0; i < historian->plant->tag_count; i++)
-        if (recorder_newest(historian->recorder, (int)i, &newest) && history_point_usable(&newest))
-            recorder_put(historian->recorder, (int)i, &(struct history_point){ loss.from_us, NAN, QUALITY_BAD_NO_COMMUNICATION },
+    for (size_t i = 0; i < historian->plant->tag_count; i++) {
+        if (recorder_newest(historian->recorder, (int)i, &newest) && history_point_usable(&newest)) {
+            int64_t end_us = loss.from_us > newest.t_us ? loss.from_us : newest.t_us + 1;
+            recorder_put(historian->recorder, (int)i, &(struct history_point){ end_us, NAN, QUALITY_BAD_NO_COMMUNICATION },
                          &historian->waiting);
+        }
+        if (!quality_is_bad(recorder_quality(historian->recorder, (int)i)))
+            recorder_set_quality(historian->recorder, (int)i, loss.to_us, QUALITY_BAD_NO_COMMUNICATION);
+    }
     char *text = mem_printf(HISTORY_GAP_TEXT, (double)(loss.to_us - loss.from_us) / 1e6);
     log_event(historian->log, LOG_WARN, EVENT_HISTORY_LOST, "history: %zu samples were lost: %s", loss.count, text);
     if (historian->file)

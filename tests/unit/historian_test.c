@@ -493,6 +493,39 @@ CASE(lost_samples_leave_a_gap)
     assert_int_equal(events_of(s, "gap", after_ns), 1);
 }
 
+/* While samples are lost, all tags become Uncertain, and one sample arrives with a source time of an hour ago. No tag's values before
+   and after the loss may be joined, the noted gap must not have the length of an hour, and each tag's present reading must be
+   recorded after the loss although no sample arrives. */
+CASE(a_loss_begins_when_samples_are_lost)
+{
+    char *path = temp_write_text(s->folder, "history", "not a folder");
+    for (int i = 0; i < TAGS; i++)
+        s->plant->tags[i].validity.stale_s = PLANT_NEVER_STALE_S;
+    start_with_limit(s, 4 * TAGS);
+    int64_t newest_ns = 0;
+    for (int i = 0; i < 5; i++) {
+        newest_ns = write_all(s, i % 2 ? 100 : 5);
+        sleep_ns(NS_PER_MS);
+    }
+    wait_until_counted(s, "plantcast_history_waiting_points", 4 * TAGS);
+    store_write(s->store, &(struct sample){ 0, 7, QUALITY_GOOD }, 1, clock_mono_ns(), clock_utc_ns() - 3600 * NS_PER_S);
+    store_link_lost(s->store, 0, clock_mono_ns());
+    wait_until_counted(s, "plantcast_history_lost_total", 2 * TAGS + 1);
+    assert_int_equal(unlink(path), 0);
+    wait_until_counted(s, "plantcast_history_good", 1);
+    sleep_ns(1200 * NS_PER_MS);
+    historian_stop(&s->historian);
+    for (int tag = 0; tag < 2; tag++) {
+        struct history_series series;
+        assert_int_equal(points_of(s, tag, &series), 7);
+        const struct history_point *points = series.points.at + 4;
+        assert_true(points[0].t_us == newest_ns / 1000 && points[0].value == 5 + tag);
+        assert_true(points[1].t_us > points[0].t_us && isnan(points[1].value));
+        assert_true(points[2].t_us > points[1].t_us && points[2].value == (tag == 0 ? 7 : 5 + tag));
+    }
+    assert_int_equal(events_of(s, "gap", newest_ns), 1);
+}
+
 static bool has_point(const struct history_series *series, int64_t utc_ns, double value)
 {
     for (size_t i = 0; i < series->points.count; i++)
