@@ -606,6 +606,25 @@ static bool is_no_news(const struct alarms *alarms, size_t tag, uint32_t quality
     return seen->bad == bad && (!counts || alarms->devices->statuses[tag] == status_of(alarms, tag, quality));
 }
 
+/* A reload has discarded the tag's reading, so its value is unknown until its next reading: the tag's alarms keep their states, and
+   their running delays stop, as while the tag is Bad. */
+static void suspend(struct alarms *alarms, size_t tag, int64_t mono_ns)
+{
+    for (int k = alarms->first_feed[tag]; k < alarms->first_feed[tag + 1]; k++) {
+        int index = alarms->feeds[k].alarm;
+        switch (alarms->feeds[k].role) {
+        case FEED_VALUE:
+        case FEED_BIT:
+            set_held(alarms, index, true);
+            condition_hold(&alarms->list[index].condition, mono_ns);
+            break;
+        case FEED_BADNESS: condition_hold(&alarms->list[index].condition, mono_ns); break;
+        case FEED_ACKNOWLEDGED: alarms->list[index].acknowledgement_bad = true; break;
+        case FEED_SUPPRESSES: break;
+        }
+    }
+}
+
 /* Creates sample events for tags that became stale after their last sample, that have waited too long for a first sample, or
    whose alarms a reload may have changed. Evaluates the alarms with these events. */
 static void look_at_qualities(struct alarms *alarms, const struct snapshot *now)
@@ -613,8 +632,11 @@ static void look_at_qualities(struct alarms *alarms, const struct snapshot *now)
     size_t count = 0;
     for (size_t i = 0; i < now->count; i++) {
         const struct reading *reading = &now->readings[i];
-        if (is_still_waiting(alarms, i, reading->quality, now->taken_mono_ns))
+        if (is_still_waiting(alarms, i, reading->quality, now->taken_mono_ns)) {
+            if (alarms->seen[i].recheck)
+                suspend(alarms, i, now->taken_mono_ns);
             continue;
+        }
         uint32_t quality = reading->quality == QUALITY_BAD_WAITING ? QUALITY_BAD_NO_COMMUNICATION : reading->quality;
         if (is_no_news(alarms, i, quality))
             continue;

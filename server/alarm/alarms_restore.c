@@ -52,6 +52,7 @@ void alarms_restore(struct alarms *alarms, int index, const struct alarm *saved,
         from.until.mono_ns = now.mono_ns + (rest_ns > ALARM_LONGEST_SHELF_NS ? ALARM_LONGEST_SHELF_NS : rest_ns);
     alarms->list[index].until_restored = true;
     alarms->list[index].acknowledged_there = alarms->list[index].rule.forgets && from.state.active && !from.state.unacknowledged;
+    alarms->list[index].acknowledgement_bad = true; /* until the acknowledgement bit's first usable sample */
     /* held true: the alarm keeps its restored state until its tag's next sample; BAD and LINK alarms are never held */
     alarms->list[index].held = alarms->list[index].kind != ALARM_BAD && alarms->list[index].kind != ALARM_LINK;
     alarms->list[index].raised_mono_ns = now.mono_ns - (from.raised_utc_ns ? now.utc_ns - from.raised_utc_ns : 0);
@@ -69,17 +70,20 @@ double alarm_value_in_unit(double value, const char *was, const char *is)
     return *was && *is && units_compare(was, is, &change) > UNITS_CONVERT ? NAN : unit_change_value(&change, value);
 }
 
-/* Copies the newest sample of each tag, and the states of devices, from the alarms of the old plant. */
+/* Copies the newest sample of each tag from the alarms of the old plant. Also copies what the tag last told about its device, if
+   the tag still belongs to the same device. */
 static void adopt_seen(struct alarms *alarms, const struct alarms *before)
 {
     for (size_t i = 0; i < before->plant->tag_count; i++) {
-        int tag = plant_find_tag(alarms->plant, before->plant->tags[i].name), of = before->devices->of_tag[i];
+        int tag = plant_find_tag(alarms->plant, before->plant->tags[i].name);
         if (tag < 0)
             continue;
+        int of = before->devices->of_tag[i], now_of = alarms->devices->of_tag[tag];
         alarms->seen[tag] = before->seen[i];
         alarms->seen[tag].value =
             alarm_value_in_unit(before->seen[i].value, plant_tag_unit(before->plant, (int)i), plant_tag_unit(alarms->plant, tag));
-        devices_put(alarms->devices, tag, (enum device_status)before->devices->statuses[i], of < 0 ? 0 : before->devices->list[of].back_ns);
+        if (of >= 0 && now_of >= 0 && !strcmp(before->devices->list[of].name, alarms->devices->list[now_of].name))
+            devices_put(alarms->devices, tag, (enum device_status)before->devices->statuses[i], before->devices->list[of].back_ns);
     }
 }
 

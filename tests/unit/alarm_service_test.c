@@ -212,6 +212,7 @@ CASE(a_lost_device_is_no_flood)
     for (int i = 0; i < TAGS; i++) {
         all[i] = i;
         s->plant->tags[i].validity.stale_s = 600;
+        s->plant->tags[i].alarms.settings.on_delay_s = 0.3; /* the LINK alarm waits until all tags are Bad */
     }
     s->store = test_store(s->plant);
     start(s);

@@ -302,6 +302,13 @@ TEST(a_mirror_shows_what_the_other_system_says)
         hear(next, 15, 4, 0, QUALITY_BAD_CONFIGURATION);
         assert_string_equal(word(next, 0, ALARM_HH), "acknowledged");
     }
+    /* after a restart, a new alarm is unacknowledged although the acknowledgement bit has not been read yet */
+    struct stage *next = stage_create(ALARMS_MIRROR);
+    int index = alarms_find(s->alarms, 0, ALARM_HH);
+    alarms_restore(next->alarms, index, alarms_at(s->alarms, index), at(14));
+    hear(next, 15, 3, 0, QUALITY_GOOD);
+    hear(next, 16, 3, 1, QUALITY_GOOD);
+    assert_string_equal(word(next, 0, ALARM_HH), "unacknowledged");
 }
 
 TEST(what_was_kept_is_taken_up)
@@ -444,6 +451,42 @@ TEST(a_reload_gives_new_tags_time)
     next->log[0] = 0;
     tick(next, 1009);
     assert_told(next, "");
+}
+
+/* A reload discards the reading of a tag while the off delay of its alarm is running. The alarm must not clear before the tag's new
+   value has been inside the limit for the whole delay. */
+TEST(a_discarded_reading_suspends_delays)
+{
+    struct stage *s = stage_with_plant(ALARMS_LOCAL), *next = stage_with_plant(ALARMS_LOCAL);
+    tag_of(s, 0)->alarms.settings.off_delay_s = tag_of(next, 0)->alarms.settings.off_delay_s = 5;
+    start(s);
+    hear(s, 1, 0, 85, QUALITY_GOOD);
+    hear(s, 2, 0, 50, QUALITY_GOOD);
+    reload(next, s);
+    next->snapshot->readings[0].quality = QUALITY_BAD_WAITING;
+    tick(next, 4);
+    tick(next, 8);
+    assert_told(next, "");
+    assert_true(alarms_at(next->alarms, alarms_find(next->alarms, 0, ALARM_H))->held);
+    hear(next, 8, 0, 50, QUALITY_GOOD);
+    tick(next, 14);
+    assert_told(next, "13 TT.H clear: unacknowledged > returned\n");
+}
+
+/* A source is lost, and a reload moves one of its tags to another source. This must not make the other source count as lost. */
+TEST(a_tag_moves_to_another_source)
+{
+    struct stage *s = stage_with_plant(ALARMS_LOCAL), *next = stage_with_plant(ALARMS_LOCAL);
+    plant_by_hand_source(next->plant, "b", 2);
+    tag_of(next, 0)->source = 1;
+    start(s);
+    hear_all(s, 1, 50, QUALITY_GOOD);
+    hear_all(s, 2, 50, QUALITY_BAD_COMMUNICATION_ERROR);
+    reload(next, s);
+    next->snapshot->readings[0].quality = QUALITY_BAD_WAITING;
+    tick(next, 3);
+    hear(next, 4, 0, 50, QUALITY_GOOD);
+    assert_null(strstr(next->log, "b.LINK"));
 }
 
 /* When a standby takes over, all readings are Bad, because the connection to the former leader is lost. No alarm is raised until its
