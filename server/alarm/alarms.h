@@ -76,7 +76,7 @@ void alarms_destroy(struct alarms **alarms); /* frees the alarms and sets *alarm
 /* Evaluates the store's sample events in the order of the array. */
 void alarms_put(struct alarms *alarms, const struct sample_event *event, size_t count);
 /* Applies the passing of time: ends delays and shelving. Readings in `now` that have become stale count as Bad samples, because
-   no event reports them. */
+   no event reports them. After alarms_adopt(), evaluates every present reading once as a new sample. */
 void alarms_tick(struct alarms *alarms, const struct snapshot *now);
 
 struct alarm_act {
@@ -126,7 +126,8 @@ bool alarms_mirror(struct alarms *alarms, const struct alarm *list, size_t count
 /* Ends the mirroring (copying) of another daemon's alarm states. Each alarm keeps the state copied last until its tag's next
    sample. */
 void alarms_lead(struct alarms *alarms, struct instant now);
-/* After a reload: copies states and running delays from the old plant's alarms to alarms of the same name and kind. */
+/* After a reload: copies states and running delays from the old plant's alarms to alarms of the same name and kind. The next
+   alarms_tick() compares the present readings with the new plant's limits. */
 void alarms_adopt(struct alarms *alarms, const struct alarms *before);
 
 #endif
