@@ -206,6 +206,8 @@ test('pictures without depth are not shown, and a message says so; a locked sess
     await enterVr(page);
     await lookFrom(page, [0, -2.5, 0], [0, 1, 0]);
     await page.evaluate(() => {
+        const { viewport } = globalThis.plantcast; // an animation frame that was requested before the headset view
+        Object.getPrototypeOf(viewport).invalidate.call(viewport);
         globalThis.plantcast.session.on('frame', (frame) => Object.assign(frame, { depth: globalThis.isMended ? frame.depth : null }));
         // turns the head by 0.2 radians, so that the page requests another picture
         globalThis.device.quaternion.set(0, Math.sin(0.1), 0, Math.cos(0.1));

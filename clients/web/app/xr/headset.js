@@ -82,7 +82,7 @@ export class Headset {
             picture: session.picture };
         viewport.warp?.hide();
         this.modules.there('place')?.close(); // closes the card of a point, because its pick requests would replace those of the hands
-        const warp = { hold: () => false, draw: () => false, waits: () => !this.isDecoded(clock.now()) };
+        const warp = { hold: () => false, holdsCamera: () => false, draw: () => false, waits: () => !this.isDecoded(clock.now()) };
         Object.assign(viewport, { warp, onDrawn: () => {}, invalidate: () => {} });
         session.resize = (size) => { this.before.size = size; };
         if (params.split)
