@@ -105,10 +105,9 @@ static const struct field_params *blind_params(const struct field_params *params
         return params;
     if (room != params)
         *room = *params;
-    if (interpolation_is_prepared(room->interpolation)) {
-        room->distance = DISTANCE_GEODESIC;
+    room->distance = interpolation_distance(room->interpolation, room->distance);
+    if (interpolation_is_prepared(room->interpolation))
         room->interpolation = INTERPOLATION_SHEPARD;
-    }
     room->reach_m = INFINITY;
     return room;
 }

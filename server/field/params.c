@@ -47,7 +47,7 @@ bool field_params_cover(const struct field_params *params)
 
 enum distance_mode field_params_distance(const struct field_params *params)
 {
-    return params->show != SHOW_DISTANCE && interpolation_is_prepared(params->interpolation) ? DISTANCE_GEODESIC : params->distance;
+    return params->show == SHOW_DISTANCE ? params->distance : interpolation_distance(params->interpolation, params->distance);
 }
 
 bool field_params_equal(const struct field_params *a, const struct field_params *b)

@@ -416,16 +416,14 @@ void placing_request_coverage(struct placing *placing, const struct place_set *s
     const struct scene *scene = placing->params.scene;
     const struct plant_group *of = &scene->plant->groups[group];
     struct sensor_coverage_job *job = mem_new(sizeof(*job));
-    *job = (struct sensor_coverage_job){
-        .placing = placing,
-        .order = { .scene = scene,
-                   .group = group,
-                   .mode = interpolation_is_prepared(of->interpolation) ? DISTANCE_GEODESIC : of->distance,
-                   .reach_m = of->reach_m,
-                   .far_m = far_m },
-        .good = mem_array(scene->plant->tag_count, 1),
-        .answer = mem_new(sizeof(*job->answer))
-    };
+    *job = (struct sensor_coverage_job){ .placing = placing,
+                                         .order = { .scene = scene,
+                                                    .group = group,
+                                                    .mode = interpolation_distance(of->interpolation, of->distance),
+                                                    .reach_m = of->reach_m,
+                                                    .far_m = far_m },
+                                         .good = mem_array(scene->plant->tag_count, 1),
+                                         .answer = mem_new(sizeof(*job->answer)) };
     for (size_t i = 0; i < scene->plant->tag_count; i++)
         job->good[i] = !quality_is_bad(snapshot->readings[i].quality);
     job->order.good = job->good;

@@ -388,7 +388,7 @@ size_t sensor_suggest(const struct suggest_query *query, struct suggestion *out)
 {
     const struct plant_group *group = &query->scene->plant->groups[query->group];
     struct suggesting suggesting = { .query = query,
-                                     .mode = interpolation_is_prepared(group->interpolation) ? DISTANCE_GEODESIC : group->distance,
+                                     .mode = interpolation_distance(group->interpolation, group->distance),
                                      .seen_m = group->hot_spot_m * sqrt(-2 * log(PLANT_SEEN_PART)) };
     size_t made = 0;
     bool good = true;

@@ -27,6 +27,12 @@ static inline bool interpolation_is_prepared(enum interpolation interpolation)
 {
     return interpolation >= INTERPOLATION_HARMONIC;
 }
+/* Returns the kind of distance with which an interpolation measures. Those computed by plantcast-prep measure along the surface,
+   whatever kind the group or the user has chosen. */
+static inline enum distance_mode interpolation_distance(enum interpolation interpolation, enum distance_mode chosen)
+{
+    return interpolation_is_prepared(interpolation) ? DISTANCE_GEODESIC : chosen;
+}
 /* Returns whether plantcast-prep computes this interpolation for the group. */
 static inline bool plant_prepares(const struct plant_group *group, enum interpolation interpolation)
 {
