@@ -551,9 +551,9 @@ const HANDLERS = {
         this.markers.set(message.seq, known);
     },
 
-    // Later pictures with the number `params_seq` show the parameters in this message. Numbers of the followed session may equal
-    // those of this session, so the picture on the screen, which keeps its parameters, gets a number that is never used. An
-    // older server sends no number: the parameters are then taken to be those of the picture on the screen.
+    // Later pictures with the number `params_seq` show the parameters in this message. The followed session and this one may use equal
+    // numbers. Therefore the picture on the screen, which keeps its parameters, gets a number that is never used. An older server
+    // sends no number: the parameters are then taken to be those of the picture on the screen.
     following({ session, who, width, height, gone = false, params_seq: seq, ...shown }) {
         const { shown: before, picture } = this;
         this.lent ||= session ?? this.leader;

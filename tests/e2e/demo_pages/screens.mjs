@@ -114,6 +114,14 @@ test('tablet: one finger orbits, two fingers pan and zoom', options, () => onScr
     }
 }));
 
+// Runs in the page: gives the picture a bound on its errors, and returns the legend's text.
+function legendWithError() {
+    const { legend, session } = globalThis.plantcast;
+    session.drawnErrors = [2, 2];
+    legend.show(true);
+    return legend.element.textContent;
+}
+
 test('desktop: two parameter sets side by side, each with legend and markers', options, () => onScreen(LARGE, async (page) => {
     const choose = (id, value) => page.locator(`#${id}`).selectOption(value);
     const whole = await page.evaluate(() => ['plant-name', 'health'].filter((id) => {
@@ -192,18 +200,14 @@ test('desktop: two parameter sets side by side, each with legend and markers', o
     await settle(page);
     assert.equal(await page.locator('#baseline').inputValue(), 'before');
     assert.match(await page.locator('#legend h2').textContent(), /Δ Temperature °C since before, \w{3} \d+ \d\d:\d\d:\d\d$/);
+    assert.match(await page.evaluate(legendWithError), /error up to 2 °C\./);
     await page.keyboard.press('Escape');
     await choose('show', 'operator');
     await settle(page);
     assert.deepEqual(await page.locator('#legend .ticks span').allTextContents(), ['LL', 'L', 'H', 'HH']);
     assert.equal(await page.locator('#legend-right').isVisible(), false);
     await shoot(page, 'operator');
-    const notes = await page.evaluate(() => {
-        const { legend, session } = globalThis.plantcast;
-        session.drawnErrors = [2, 2];
-        legend.show(true);
-        return legend.element.textContent;
-    });
+    const notes = await page.evaluate(legendWithError);
     assert.doesNotMatch(notes, /error up to/, 'a view without a unit says nothing about errors');
 }));
 

@@ -136,7 +136,7 @@ export class Legend {
         const map = model.colormap(colormap);
         const rule = { map, min: range[0], max: range[1], log: scale === 'log', interval: ramp_interval ?? 0, breaks };
         const isOperator = show === 'operator';
-        this.element.replaceChildren(this.heading(group, params),
+        this.element.replaceChildren(this.heading(params),
             isOperator ? this.limitScale()
                 : this.scale(rule, isolines ?? [], show === 'value' ? group.limits : {},
                     !(range[0] <= LEAST[show] * (group.max - group.min))),
@@ -152,9 +152,9 @@ export class Legend {
     notes(params, map, isOperator) {
         const { look, scale } = params, off = this.session.drawnErrors[this.half];
         return [
-            // largest possible error of the interpolated values where the picture marks them as uncertain, in the unit of the
-            // legend's title; left out in the operator's view (values relative to alarm limits), which has no unit
-            off && !isOperator && say('legend.drawn', { off }),
+            // largest possible error of the interpolated values where the picture marks them as uncertain; left out in the
+            // operator's view (values relative to alarm limits), which has no unit
+            off && !isOperator && say('legend.drawn', { off: `${off} ${this.unit(params)}` }),
             this.title(params)[2],
             isOperator && say('legend.operator'),
             !isOperator && scale === 'log' && say('legend.log'),
@@ -163,9 +163,13 @@ export class Legend {
         ].filter(Boolean);
     }
 
-    heading(group, params) {
-        const { show, unit } = params, [text, since] = this.title(params);
-        return make('h2', {}, text, ' ', make('span', {}, show === 'operator' ? '' : unitText(unit ?? group.unit)),
+    unit({ group, unit }) {
+        return unitText(unit ?? this.session.model.group(group).unit);
+    }
+
+    heading(params) {
+        const [text, since] = this.title(params);
+        return make('h2', {}, text, ' ', make('span', {}, params.show === 'operator' ? '' : this.unit(params)),
             since && make('span', { class: 'since' }, ` ${since}`));
     }
 
