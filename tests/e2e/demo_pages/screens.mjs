@@ -200,7 +200,7 @@ test('desktop: two parameter sets side by side, each with legend and markers', o
     await settle(page);
     assert.equal(await page.locator('#baseline').inputValue(), 'before');
     assert.match(await page.locator('#legend h2').textContent(), /Δ Temperature °C since before, \w{3} \d+ \d\d:\d\d:\d\d$/);
-    assert.match(await page.evaluate(legendWithError), /error up to 2 °C\./);
+    assert.match(await page.evaluate(legendWithError), /error up to 2\u00a0°C\./);
     await page.keyboard.press('Escape');
     await choose('show', 'operator');
     await settle(page);

@@ -154,7 +154,7 @@ export class Legend {
         return [
             // largest possible error of the interpolated values where the picture marks them as uncertain; left out in the
             // operator's view (values relative to alarm limits), which has no unit
-            off && !isOperator && say('legend.drawn', { off: `${off} ${this.unit(params)}` }),
+            off && !isOperator && say('legend.drawn', { off: `${off}\u00a0${this.unit(params)}` }),
             this.title(params)[2],
             isOperator && say('legend.operator'),
             !isOperator && scale === 'log' && say('legend.log'),
