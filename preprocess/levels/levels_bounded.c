@@ -168,16 +168,6 @@ static double distance_to(const double p[3], const double a[3], const double b[3
     return vec_distance(p, at);
 }
 
-static double distance_to_line(const double p[3], const double a[3], const double b[3])
-{
-    double ab[3], ap[3], at[3];
-    vec_sub(b, a, ab);
-    vec_sub(p, a, ap);
-    double along = vec_dot(ap, ab) / max_of(vec_dot(ab, ab), 1e-300);
-    vec_mix(a, b, min_of(max_of(along, 0), 1), at);
-    return vec_distance(p, at);
-}
-
 static bool has_end(const struct ring_wedge *wedge, uint32_t end)
 {
     return wedge->points[0] == end || wedge->points[1] == end;
@@ -221,7 +211,7 @@ static double border_of(const struct bounded *b, const struct point_ring *ring, 
         if (ring->is_feature[e] && e != target)
             other = e;
     return (double)b->moved_m[ring->point] +
-           distance_to_line(b->points[ring->point], b->points[ring->ends[target]], b->points[ring->ends[other]]);
+           vec_segment_distance(b->points[ring->point], b->points[ring->ends[target]], b->points[ring->ends[other]]);
 }
 
 static double longest_edge(const double *const at[3])

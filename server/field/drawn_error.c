@@ -31,7 +31,7 @@ enum { MOST_SAMPLES = 10000000 };
 #define SHEPARD_ACCEPTED 6.0f
 /* added to K if weights fall to zero at a limited reach; d is then at most the distance to the end of the nearest sensor's reach. Each
    sensor at the end of its reach adds at most REACH_BEND_EACH. In 720,000 random triangles with 2 to 40 sensors, many at the end of
-   their reach, and powers of 0.25 to 4, K was at most REACH_BEND. */
+   their reach, and powers of 0.25 to 4, this addition was at most REACH_BEND. */
 #define REACH_BEND 12.0f
 #define REACH_BEND_EACH 2.0f
 /* for interpolation paper (Algorithm 1 of Kim & Suh): longest side of a triangle that needs no samples, as a fraction of the

@@ -254,8 +254,7 @@ static void merge_short_sides(struct surface *surface)
     surface->plane = mem_array(surface->report.triangles, sizeof(*surface->plane));
     for (uint32_t source = 0; source < surface->report.triangles; source++)
         surface->plane[source] = source;
-    const double within_m = min_of(SHORT_SIDES_WITHIN * surface->report.size_m, SHORT_SIDES_OF_TOLERANCE * surface->report.tolerance_m);
-    short_sides_merge(&surface->mesh, surface->report.size_m, within_m, surface->plane);
+    short_sides_merge(&surface->mesh, surface->report.size_m, surface->report.tolerance_m, surface->plane);
 }
 
 /* Samples the surface evenly: adds points until edges are no longer than the spacing. Rods and narrow strips take more points

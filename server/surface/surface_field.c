@@ -41,7 +41,9 @@ static void at_stray(const struct surface *surface, const struct surface_field *
 /* Writes the distances of all model vertices from one source. distances_m: those of the surface's points. */
 static void take_vertices(const struct surface *surface, const struct surface_point *source, float *distances_m, float *out)
 {
-    struct surface_field field = { 1, (struct surface_point *)source, (uint32_t *)&source->tri, distances_m };
+    struct surface_field field = {
+        .source_count = 1, .sources = (struct surface_point *)source, .source_tris = (uint32_t *)&source->tri, .distances_m = distances_m
+    };
     for (size_t v = 0; v < surface->vertex_count; v++)
         out[v] = distances_m[surface->vertex_point[v]];
     for (size_t i = 0; i < surface->stray_count; i++)

@@ -32,7 +32,7 @@ static size_t merged(struct ring *ring, uint32_t around, double outer_m, double 
 {
     *ring = (struct ring){ 0 };
     make_ring(ring, around, outer_m, rise_m);
-    return short_sides_merge(&ring->mesh, 10, 10 * SHORT_SIDES_WITHIN, ring->plane);
+    return short_sides_merge(&ring->mesh, 10, 1, ring->plane);
 }
 
 /* Returns the largest distance of the middle of a border edge from the circles. Asserts that the mesh stays one closed band. */

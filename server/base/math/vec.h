@@ -99,6 +99,17 @@ static inline void vec_mix(const double a[3], const double b[3], double t, doubl
         out[i] = a[i] + t * (b[i] - a[i]);
 }
 
+/* Returns the distance of a point from the segment a-b. */
+static inline double vec_segment_distance(const double p[3], const double a[3], const double b[3])
+{
+    double ab[3], ap[3], at[3];
+    vec_sub(b, a, ab);
+    vec_sub(p, a, ap);
+    double along = vec_dot(ap, ab) / max_of(vec_dot(ab, ab), 1e-300);
+    vec_mix(a, b, min_of(max_of(along, 0), 1), at);
+    return vec_distance(p, at);
+}
+
 /* --- single precision ------------------------------------------------------------------------------------------------------------ */
 
 /* Computes a - b from single-precision vectors; the result has double precision. */

@@ -161,7 +161,8 @@ static void read_place(const struct pick_spot *spot, struct field *field, struct
 {
     struct field_params params = spot->view->field;
     if (params.show == SHOW_OPERATOR && field_is_assumed(field, out->asset, &params)) {
-        /* one sensor colours the asset, chosen among those with limits: states its reading, not its place between the limits */
+        /* One sensor, chosen among those with limits, colours the asset. The pick states that sensor's reading, not its place between the
+         * limits. */
         struct pick one = *out;
         read_place_as(spot, field, &params, &one);
         if (one.nearest_count > 0) {

@@ -105,12 +105,6 @@ static bool keeps_areas(const struct thin *thin, const struct star *star, const 
     return true;
 }
 
-static bool has(const struct thin *thin, uint32_t tri, uint32_t point)
-{
-    const uint32_t *v = thin->mesh->tris[tri];
-    return v[0] == point || v[1] == point || v[2] == point;
-}
-
 /* Collapsing `from` into `to` removes the triangle with the corners `from`, `to` and `point`. Returns whether `point` keeps
    another visible triangle at `from` or `to`. Checked because a removed triangle without area may be the only connection
    between two parts. */
@@ -118,7 +112,7 @@ static bool stays_joined(const struct thin *thin, uint32_t point, uint32_t from,
 {
     for (uint32_t corner = thin->heads[point]; corner != TRIMESH_NONE; corner = thin->next[corner]) {
         uint32_t tri = corner / 3;
-        if (!thin->gone[tri] && !thin->hidden[tri] && has(thin, tri, from) != has(thin, tri, to))
+        if (!thin->gone[tri] && !thin->hidden[tri] && trimesh_has(thin->mesh, tri, from) != trimesh_has(thin->mesh, tri, to))
             return true;
     }
     return false;

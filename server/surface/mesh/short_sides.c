@@ -13,6 +13,7 @@
 /* A merge may displace the surface by this fraction of the merged side's length. Circles of 628 and more sides are merged to
    at least 157 sides, fewer sides are kept. */
 #define MAX_DISPLACED 0.01
+#define SHORT_SIDES_OF_TOLERANCE 0.1 /* the surface moves by at most this fraction of the asset's tolerance */
 #define MAX_STAR 48 /* maximum number of triangles around a merged point, and around the point that it is merged with */
 #define MAX_ROUNDS 16
 
@@ -26,8 +27,9 @@ struct merging {
     char *is_short, *locked;
 };
 
-struct merge_star {                                                            /* triangles around a point */
-    uint32_t point, tris[MAX_STAR], around[2 * MAX_STAR], faces[2 * MAX_STAR]; /* faces: by neighbour: number of triangles at the edge */
+struct merge_star { /* triangles around a point */
+    const uint32_t *tris;
+    uint32_t point, around[2 * MAX_STAR], faces[2 * MAX_STAR]; /* faces: by neighbour: number of triangles at the edge */
     size_t tri_count, around_count, border_count;
 };
 
@@ -39,12 +41,6 @@ static const double *point_of(const struct merging *merging, uint32_t point)
 static double length_of(const struct merging *merging, uint32_t a, uint32_t b)
 {
     return vec_distance(point_of(merging, a), point_of(merging, b));
-}
-
-static bool has(const struct merging *merging, uint32_t tri, uint32_t point)
-{
-    const uint32_t *v = merging->mesh->tris[tri];
-    return v[0] == point || v[1] == point || v[2] == point;
 }
 
 static double longest_of(const struct merging *merging, uint32_t tri)
@@ -99,11 +95,11 @@ static size_t place_in(const struct merge_star *star, uint32_t point)
 static bool collect_star(const struct merging *merging, uint32_t point, struct merge_star *star)
 {
     star->point = point;
+    star->tris = merging->tris + merging->first[point];
     star->tri_count = merging->first[point + 1] - merging->first[point];
     star->around_count = star->border_count = 0;
     if (star->tri_count == 0 || star->tri_count > MAX_STAR)
         return false;
-    memcpy(star->tris, merging->tris + merging->first[point], star->tri_count * sizeof(*star->tris));
     for (size_t t = 0; t < star->tri_count; t++)
         for (int i = 0; i < 3; i++) {
             uint32_t other = merging->mesh->tris[star->tris[t]][i];
@@ -125,8 +121,8 @@ static bool collect_star(const struct merging *merging, uint32_t point, struct m
                               : star->tri_count == star->around_count;
 }
 
-/* Returns whether the triangles at edge a-b are needles with that edge as a short side, and whether merging a with b keeps the
-   mesh a surface: a and b must have no common neighbours except the third corners of these triangles. */
+/* Returns whether the edge to neighbour `at` is a short side of needles only, and whether merging its ends keeps the mesh a surface.
+   The ends may share no neighbours except the third corners of these triangles. */
 static bool is_needle_side(const struct merging *merging, const struct merge_star *star, size_t at)
 {
     const uint32_t to = star->around[at], count = merging->first[to + 1] - merging->first[to];
@@ -136,7 +132,7 @@ static bool is_needle_side(const struct merging *merging, const struct merge_sta
     if (length_m > merging->short_m || count > MAX_STAR)
         return false;
     for (size_t t = 0; t < star->tri_count; t++)
-        if (has(merging, star->tris[t], to) && longest_of(merging, star->tris[t]) < NEEDLE * length_m)
+        if (trimesh_has(merging->mesh, star->tris[t], to) && longest_of(merging, star->tris[t]) < NEEDLE * length_m)
             return false;
     for (uint32_t t = merging->first[to]; t < merging->first[to + 1]; t++)
         for (int i = 0; i < 3; i++) {
@@ -152,19 +148,8 @@ static bool is_needle_side(const struct merging *merging, const struct merge_sta
     return shared_count == star->faces[at];
 }
 
-static double distance_to_line(const double p[3], const double a[3], const double b[3])
-{
-    double way[3], to[3], off[3];
-    vec_sub(b, a, way);
-    vec_sub(p, a, to);
-    double square = vec_dot(way, way), t = square > 0 ? min_of(max_of(vec_dot(to, way) / square, 0), 1) : 0;
-    for (int i = 0; i < 3; i++)
-        off[i] = to[i] - t * way[i];
-    return vec_length(off);
-}
-
-/* Returns the displacement of the surface, in metres, if the star's point is merged with its neighbour `to`: that neighbour's
-   distance from the planes of the triangles that stay, and that of the point from the new border. INFINITY: a triangle would turn over. */
+/* Returns by how far the surface moves, in metres, if the star's point is merged with `to`. This is the larger of two distances:
+   from `to` to the planes of the triangles that stay, and from the point to the new border. INFINITY: a triangle would turn over. */
 static double displaced(const struct merging *merging, const struct merge_star *star, uint32_t to)
 {
     const double *from = point_of(merging, star->point), *ends[2] = { from, from };
@@ -173,7 +158,7 @@ static double displaced(const struct merging *merging, const struct merge_star *
         const uint32_t *v = merging->mesh->tris[star->tris[t]];
         const double *before[3], *after[3];
         double old[3], new[3], way[3];
-        if (has(merging, star->tris[t], to))
+        if (trimesh_has(merging->mesh, star->tris[t], to))
             continue;
         for (int i = 0; i < 3; i++) {
             before[i] = point_of(merging, v[i]);
@@ -191,7 +176,7 @@ static double displaced(const struct merging *merging, const struct merge_star *
     for (size_t i = 0, end = 0; i < star->around_count; i++)
         if (star->faces[i] == 1)
             ends[end++] = point_of(merging, star->around[i]);
-    return max_of(most_m, distance_to_line(from, ends[0], ends[1]));
+    return max_of(most_m, vec_segment_distance(from, ends[0], ends[1]));
 }
 
 /* Merges the star's point with a neighbour. Locks all points of the star for this round. */
@@ -207,7 +192,7 @@ static void merge(const struct merging *merging, const struct merge_star *star, 
         trimesh_join(merging->plane, merging->mesh->tri_source[star->tris[0]], merging->mesh->tri_source[star->tris[t]]);
 }
 
-/* Merges a point with the nearest neighbour that is possible. Returns whether there was one. */
+/* Merges the point with its nearest neighbour that passes all checks. Returns false if none does. */
 static bool try_point(const struct merging *merging, uint32_t point)
 {
     struct merge_star star;
@@ -267,19 +252,11 @@ static size_t merge_round(const struct merging *merging)
     return count;
 }
 
-/* Drops triangles that became flat or duplicates. */
-static void clean(const struct merging *merging)
+size_t short_sides_merge(struct trimesh *mesh, double size_m, double tolerance_m, uint32_t *plane)
 {
-    size_t dropped = 0;
-    for (uint32_t p = 0; p < merging->mesh->point_count; p++)
-        merging->target[p] = p;
-    trimesh_rename(merging->mesh, merging->target, &dropped, &dropped);
-}
-
-size_t short_sides_merge(struct trimesh *mesh, double size_m, double within_m, uint32_t *plane)
-{
+    const double within_m = min_of(SHORT_SIDES_WITHIN * size_m, SHORT_SIDES_OF_TOLERANCE * tolerance_m);
     struct merging merging = { .mesh = mesh, .short_m = SHORT_OF_SIZE * size_m, .within_m = within_m, .plane = plane };
-    size_t count = 0, more = 1;
+    size_t count = 0, more = 1, dropped = 0;
     merging.is_short = mem_try_array(mesh->point_count, 1);
     if (merging.is_short && mark_short(&merging)) {
         merging.locked = mem_try_array(mesh->point_count, 1);
@@ -292,7 +269,7 @@ size_t short_sides_merge(struct trimesh *mesh, double size_m, double within_m, u
     for (int round = 0; good && round < MAX_ROUNDS && more > 0 && (round == 0 || mark_short(&merging)); round++)
         count += more = merge_round(&merging);
     if (count > 0)
-        clean(&merging);
+        trimesh_clean(mesh, &dropped, &dropped);
     mem_free(merging.is_short);
     mem_free(merging.locked);
     mem_free(merging.moved_m);

@@ -6,12 +6,11 @@
 #include "surface/mesh/trimesh.h"
 
 /* Merges the ends of sides of needle-shaped triangles, where the surface or its border is almost straight. size_m: size of the
-   model. The surface moves by at most within_m: SHORT_SIDES_WITHIN of the size, and SHORT_SIDES_OF_TOLERANCE of the asset's tolerance,
-   so that places on the model still count as on the surface. Merged points stay in the mesh, without triangles. Triangles
+   model. tolerance_m: the asset's tolerance. The surface moves by at most the smaller of SHORT_SIDES_WITHIN of the size and a tenth of the
+   tolerance, so that places on the model still count as on the surface. Merged points stay in the mesh, without triangles. Triangles
    without area are dropped. plane: by model triangle (tri_source), a union-find structure (trimesh_root()); the sets of model
    triangles that share pieces are joined. Returns the number of merged points; 0 if memory runs out. */
 #define SHORT_SIDES_WITHIN 2e-5
-#define SHORT_SIDES_OF_TOLERANCE 0.1
-size_t short_sides_merge(struct trimesh *mesh, double size_m, double within_m, uint32_t *plane);
+size_t short_sides_merge(struct trimesh *mesh, double size_m, double tolerance_m, uint32_t *plane);
 
 #endif

@@ -128,6 +128,12 @@ void trimesh_copy(struct trimesh *copy, const struct trimesh *mesh)
     copy->tri_count = mesh->tri_count;
 }
 
+bool trimesh_has(const struct trimesh *mesh, uint32_t tri, uint32_t point)
+{
+    const uint32_t *v = mesh->tris[tri];
+    return v[0] == point || v[1] == point || v[2] == point;
+}
+
 uint32_t trimesh_add_point(struct trimesh *mesh, const double point[3])
 {
     mem_grow(&mesh->points, &mesh->point_capacity, mesh->point_count + 1, sizeof(*mesh->points));
@@ -277,8 +283,7 @@ static bool tri_has_area(const struct trimesh *mesh, uint32_t a, uint32_t b, uin
     return vec_length(n) > 1e-6 * longest2;
 }
 
-/* Removes triangles without area, and duplicate triangles. */
-static void clean(struct trimesh *mesh, size_t *degenerate, size_t *repeated)
+void trimesh_clean(struct trimesh *mesh, size_t *degenerate, size_t *repeated)
 {
     struct edge_table pairs, seen;
     edge_table_init(&pairs, mesh->tri_count * 3 / 2);
@@ -319,7 +324,7 @@ bool trimesh_weld(struct trimesh *mesh, const struct trimesh_model *model, doubl
         const uint32_t *v = model->triangles + 3 * t;
         trimesh_add_tri(mesh, vertex_point[v[0]], vertex_point[v[1]], vertex_point[v[2]], (uint32_t)t);
     }
-    clean(mesh, degenerate, repeated);
+    trimesh_clean(mesh, degenerate, repeated);
     return true;
 }
 
@@ -328,7 +333,7 @@ void trimesh_rename(struct trimesh *mesh, const uint32_t *target, size_t *degene
     for (size_t t = 0; t < mesh->tri_count; t++)
         for (int i = 0; i < 3; i++)
             mesh->tris[t][i] = target[mesh->tris[t][i]];
-    clean(mesh, degenerate, repeated);
+    trimesh_clean(mesh, degenerate, repeated);
 }
 
 /* --- sampling ------------------------------------------------------------------------------------------------------------ */

@@ -36,6 +36,9 @@ void trimesh_stop_counting(struct trimesh *mesh);
  * overwritten. */
 void trimesh_copy(struct trimesh *copy, const struct trimesh *mesh);
 
+/* Returns whether the triangle has this point as a corner. */
+bool trimesh_has(const struct trimesh *mesh, uint32_t tri, uint32_t point);
+
 /* Appends a point. Returns the index of the point. */
 uint32_t trimesh_add_point(struct trimesh *mesh, const double point[3]);
 /* Appends a triangle of three points that is a piece of the model's triangle `source`. */
@@ -44,6 +47,8 @@ void trimesh_add_tri(struct trimesh *mesh, uint32_t a, uint32_t b, uint32_t c, u
 /* Finds points to merge. target[point] receives the index of an earlier point at most within_m away, or the point's own index
  * if there is none. A point that is another's target is its own target. Returns false if out of memory. */
 bool trimesh_find_twins(const struct trimesh *mesh, double within_m, uint32_t *target);
+/* Removes triangles without area (adds their number to *degenerate) and duplicate triangles (adds to *repeated). */
+void trimesh_clean(struct trimesh *mesh, size_t *degenerate, size_t *repeated);
 /* Replaces each point i by point target[i]. Drops triangles that lost their area (adds their number to *degenerate) or became duplicates
    (adds to *repeated). */
 void trimesh_rename(struct trimesh *mesh, const uint32_t *target, size_t *degenerate, size_t *repeated);

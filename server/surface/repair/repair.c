@@ -162,7 +162,7 @@ static void try_edge(struct seams *s, size_t i, uint32_t e)
 {
     const struct borders *b = s->borders;
     uint32_t p = b->points[i], u = b->edges[e][0], v = b->edges[e][1];
-    if (repair_tri_has(s->mesh, b->edge_tri[e], p))
+    if (trimesh_has(s->mesh, b->edge_tri[e], p))
         return;
     const double *a = s->mesh->points[u], *c = s->mesh->points[v], *q = s->mesh->points[p];
     double ac[3], aq[3], at[3], length2;

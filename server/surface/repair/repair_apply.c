@@ -7,11 +7,6 @@
 #include "surface/mesh/bvh.h"
 #include "surface/repair/repair_impl.h"
 
-bool repair_tri_has(const struct trimesh *mesh, uint32_t tri, uint32_t point)
-{
-    return mesh->tris[tri][0] == point || mesh->tris[tri][1] == point || mesh->tris[tri][2] == point;
-}
-
 static void compose(uint32_t *target, size_t count, const uint32_t *then)
 {
     for (size_t i = 0; i < count; i++)

@@ -67,7 +67,7 @@ static void visit_crossed(void *arg, uint32_t tri)
     const uint32_t *v = c->mesh->tris[tri];
     double t, w[3];
     bool own = c->part[tri] == c->own;
-    if (own && (repair_tri_has(c->mesh, tri, c->edge[0]) || repair_tri_has(c->mesh, tri, c->edge[1])))
+    if (own && (trimesh_has(c->mesh, tri, c->edge[0]) || trimesh_has(c->mesh, tri, c->edge[1])))
         return;
     const double *p = c->mesh->points[c->edge[0]], *q = c->mesh->points[c->edge[1]];
     if (!triangle_crossed(p, q, c->mesh->points[v[0]], c->mesh->points[v[1]], c->mesh->points[v[2]], &t, w))
@@ -179,7 +179,7 @@ static void find_touches(struct contacts *c)
                 c->touched[p] = c->body[place.tri];
             else if (!line_of_sight_find(&sight, p, c->own, &place))
                 continue;
-            if (!repair_tri_has(c->mesh, place.tri, p))
+            if (!trimesh_has(c->mesh, place.tri, p))
                 set_into_face(c, p, place.tri, place.weights, place.distance_m);
         }
     line_of_sight_finish(&sight);

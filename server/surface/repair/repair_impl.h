@@ -8,8 +8,6 @@
 
 #define REPAIR_AT_END 1e-3 /* a point counts as an end of an edge if it is nearer to it than this, as a fraction of the edge's length */
 
-/* Returns whether the triangle has this point as a corner. */
-bool repair_tri_has(const struct trimesh *mesh, uint32_t tri, uint32_t point);
 /* Applies the collected edits to the mesh, counts the bridges (pairs of joined points) in the report, and frees `edit`. The last
  * `crossings` points of the mesh are those at which an edge passes through a face. Each is inserted into both, but counts as one bridge. */
 void repair_apply(struct mesh_edit *edit, struct trimesh *mesh, uint32_t *target, size_t target_count, size_t crossings,
