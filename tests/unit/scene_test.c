@@ -285,8 +285,7 @@ static uint64_t models_hash(const struct scene_fixture *f)
     return hash;
 }
 
-/* The models' hash contains what the manifest says about buffers and textures. Without that it contains the model files alone, and a
-   model without such files has the same hash either way. */
+/* Returns the hash of the parameters for which an asset's triangles are cut. */
 static uint64_t cuts_of(const struct scene_fixture *f, int asset)
 {
     struct plant_sensor *sensors;
@@ -320,6 +319,8 @@ CASE(cuts_for_other_parameters_are_known)
     assert_true(first != cuts && cuts_of(f, 1) != cuts && cuts_of(f, 1) != first);
 }
 
+/* The models' hash contains what the manifest says about buffers and textures. Without that it contains the model files alone, and a
+   model without such files has the same hash either way. */
 CASE(the_hash_of_the_models_covers_the_files_that_they_refer_to)
 {
     uint64_t model, alone = models_hash(f);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Rows that `plantcast match` adds to the tag list: data types, scaling, ranges and alarm limits of an export, and what it leaves
- * out and names. */
+/* Rows that `plantcast match` adds to the tag list (data types, scaling, ranges, alarm limits), and the names of tags whose values it
+   leaves out. */
 #include "preprocess/match/tag_rows.h"
 
 #include "tests/support/test.h"
@@ -57,6 +57,13 @@ static void expect_names(const char *kind, const struct tag_names *names, const 
         fail_msg("%s: '%s', expected '%s'", kind, found, want);
 }
 
+static void expect_cell(const char *kind, const struct rows_run *run, const char *column, const char *want)
+{
+    const char *found = cell_of(run, "T", column);
+    if (strcmp(found, want) != 0)
+        fail_msg("%s, %s: '%s', expected '%s'", kind, column, found, want);
+}
+
 static const struct tag_source modbus = { "plc", true, 1 }, opcua = { "dcs", false, 1 };
 
 /* A scale is taken over exactly, or left out and named; raw values must never pass for engineering values without a word. */
@@ -92,8 +99,7 @@ TEST(test_scaling)
         static const char *const columns[] = { "Scaling", "Raw Low", "Raw High", "Scaled Low", "Scaled High", "Negate Value" };
         const char *const want[] = { cases[i].scaling, cases[i].raw_low, cases[i].raw_high, cases[i].low, cases[i].high, cases[i].negate };
         for (size_t c = 0; c < sizeof(columns) / sizeof(*columns); c++)
-            if (strcmp(cell_of(&run, "T", columns[c]), want[c]) != 0)
-                fail_msg("%s: %s '%s', expected '%s'", cases[i].kind, columns[c], cell_of(&run, "T", columns[c]), want[c]);
+            expect_cell(cases[i].kind, &run, columns[c], want[c]);
         expect_names(cases[i].kind, &run.rows.scalings, cases[i].left_out);
         finish(&run);
     }
@@ -146,8 +152,8 @@ TEST(test_types)
         put(&run, NULL, test_printf("Tag Name,Address,Data Type\nT,%s,%s\n", cases[i].address, cases[i].type), &modbus);
         assert_int_equal(run.rows.count, cases[i].want ? 2 : 1);
         assert_int_equal(run.rows.types.count, cases[i].want ? 0 : 1);
-        if (cases[i].want && strcmp(cell_of(&run, "T", "Data Type"), cases[i].want) != 0)
-            fail_msg("%s: '%s'", cases[i].type, cell_of(&run, "T", "Data Type"));
+        if (cases[i].want)
+            expect_cell(cases[i].type, &run, "Data Type", cases[i].want);
         finish(&run);
     }
     struct rows_run run;
@@ -179,9 +185,10 @@ TEST(test_intouch_items)
         put(&run, NULL,
             test_printf(":mode=ask\n:%s,Group,Comment,ItemName\n\"T\",\"$System\",\"\",\"%s\"\n", cases[i].section, cases[i].item),
             &modbus);
-        if (cases[i].type &&
-            (strcmp(cell_of(&run, "T", "Address"), cases[i].address) != 0 || strcmp(cell_of(&run, "T", "Data Type"), cases[i].type) != 0))
-            fail_msg("%s %s: '%s' '%s'", cases[i].section, cases[i].item, cell_of(&run, "T", "Address"), cell_of(&run, "T", "Data Type"));
+        if (cases[i].type) {
+            expect_cell(cases[i].item, &run, "Address", cases[i].address);
+            expect_cell(cases[i].item, &run, "Data Type", cases[i].type);
+        }
         assert_int_equal(run.rows.types.count, cases[i].type ? 0 : 1);
         if (!strcmp(cases[i].item, "40001 LF"))
             expect_names("types", &run.rows.types, "T (40001 LF)");
