@@ -321,12 +321,14 @@ static struct month_file *open_month(struct historian *historian, int month, int
     return file;
 }
 
-static void say_gap(struct historian *historian, struct month_file *file, int64_t ended_us)
+/* Notes a gap in recording in the month file's table of events, if `file` is not NULL. Returns the text for the caller's log line;
+   free it with mem_free(). */
+static char *note_gap(struct month_file *file, int64_t from_us, int64_t to_us)
 {
-    char *text = mem_printf(HISTORY_GAP_TEXT, (double)(clock_utc_ns() / 1000 - ended_us) / 1e6);
-    log_info(historian->log, "history: %s", text);
-    month_file_note(file, ended_us, "gap", text);
-    mem_free(text);
+    char *text = mem_printf(HISTORY_GAP_TEXT, (double)(to_us - from_us) / 1e6);
+    if (file)
+        month_file_note(file, from_us, "gap", text);
+    return text;
 }
 
 /* Called after a start. If the previous daemon was killed: records each tag's newest sample, ends the line through the tag's
@@ -343,8 +345,11 @@ static int recover(struct historian *historian)
         error = month_file_recover(file, QUALITY_BAD_NO_COMMUNICATION, !historian->stands_by, &ended_us);
         if (!error)
             error = month_file_tidy(file);
-        if (!error && ended_us != INT64_MIN)
-            say_gap(historian, file, ended_us);
+        if (!error && ended_us != INT64_MIN) {
+            char *text = note_gap(file, ended_us, clock_utc_ns() / 1000);
+            log_info(historian->log, "history: %s", text);
+            mem_free(text);
+        }
         if (error == -EBADMSG) {
             month_file_set_aside(&file);
             error = 0;
@@ -589,7 +594,7 @@ static void note_step(struct historian *historian, int64_t utc_ns, int64_t step_
 }
 
 /* Before the historian of the reloaded plant takes over, ends every tag's recorded line at its newest sample. A tag that the
-   reloaded plant lacks, or whose values come from elsewhere there, also gets a point without a value, which marks the end of its
+   reloaded plant lacks, or for which plant_kept_signals() is false, also gets a point without a value, which marks the end of its
    data. */
 static void end_lines(struct historian *historian, int64_t utc_ns)
 {
@@ -600,7 +605,8 @@ static void end_lines(struct historian *historian, int64_t utc_ns)
     for (size_t i = 0; i < historian->plant->tag_count; i++) {
         int next = plant_find_tag(historian->next, historian->plant->tags[i].name);
         if (next < 0 || !kept[next])
-            put(historian, (int)i, &(struct history_point){ utc_ns / 1000, NAN, QUALITY_BAD_NO_COMMUNICATION });
+            recorder_put(historian->recorder, (int)i, &(struct history_point){ utc_ns / 1000, NAN, QUALITY_BAD_NO_COMMUNICATION },
+                         &historian->waiting);
     }
     mem_free(kept);
     recorder_end(historian->recorder, &historian->waiting);
@@ -608,8 +614,8 @@ static void end_lines(struct historian *historian, int64_t utc_ns)
 
 /* Call once points can be recorded again after samples were lost. Ends every tag's line when the first lost sample arrived, but not
    before the tag's newest recorded sample, so that no value is known for the time of the loss. Notes the gap. The following
-   take_qualities() then records all present readings that are not Bad. The added points may exceed max_waiting by one for each
-   tag. */
+   take_qualities() then records all present readings that are not Bad. At the daemon's end, no readings are recorded afterwards. The
+   added points may exceed max_waiting by one for each tag. */
 static void end_loss(struct historian *historian)
 {
     const struct loss loss = historian->loss;
@@ -624,10 +630,8 @@ static void end_loss(struct historian *historian)
         if (!quality_is_bad(recorder_quality(historian->recorder, (int)i)))
             recorder_set_quality(historian->recorder, (int)i, loss.to_us, QUALITY_BAD_NO_COMMUNICATION);
     }
-    char *text = mem_printf(HISTORY_GAP_TEXT, (double)(loss.to_us - loss.from_us) / 1e6);
+    char *text = note_gap(historian->file, loss.from_us, loss.to_us);
     log_event(historian->log, LOG_WARN, EVENT_HISTORY_LOST, "history: %zu samples were lost: %s", loss.count, text);
-    if (historian->file)
-        month_file_note(historian->file, loss.from_us, "gap", text);
     mem_free(text);
 }
 
@@ -637,7 +641,7 @@ static void tick(struct historian *historian, bool last)
     int64_t mono_ns = now.mono_ns, utc_ns = now.utc_ns, step_ns = watch_clock(historian, &now);
     /* ignores steps of a standby's own clock, because its samples have the leading daemon's times */
     step_ns = historian->stands_by ? 0 : step_ns;
-    if (historian->loss.count && (historian->waiting.count < historian->max_waiting || last))
+    if (historian->loss.count && historian->waiting.count < historian->max_waiting)
         end_loss(historian);
     take_events(historian, &now, step_ns);
     if (!historian->stands_by)
@@ -651,6 +655,8 @@ static void tick(struct historian *historian, bool last)
         recorder_end(historian->recorder, &historian->waiting);
     if (!historian->stands_by && (new_month || last))
         repeat_readings(historian, new_month ? month_begin_us(month_of(utc_ns / 1000)) : utc_ns / 1000 - REPEAT_US, mono_ns, utc_ns);
+    if (last && historian->loss.count)
+        end_loss(historian);
     if (last)
         end_lines(historian, utc_ns);
     try_to_write(historian, mono_ns, utc_ns, last);

@@ -532,6 +532,37 @@ CASE(a_loss_begins_when_samples_are_lost)
     assert_int_equal(events_of(s, "gap", newest_ns), 1);
 }
 
+/* The daemon ends while samples are lost. Its end must not count further samples as lost, and each tag's values must end. */
+CASE(a_loss_ends_with_the_daemon)
+{
+    struct rlimit unlimited;
+    signal(SIGXFSZ, SIG_IGN);
+    assert_int_equal(getrlimit(RLIMIT_FSIZE, &unlimited), 0);
+    for (int i = 0; i < TAGS; i++)
+        s->plant->tags[i].validity.stale_s = PLANT_NEVER_STALE_S;
+    start_with_limit(s, 4 * TAGS);
+    write_all(s, 1);
+    sleep_ns(1300 * NS_PER_MS);
+    assert_int_equal(events_of(s, "gap", clock_utc_ns()), 0); /* the month's file exists */
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &(struct rlimit){ 20000, unlimited.rlim_max }), 0);
+    for (int i = 0; i < 20; i++) {
+        write_all(s, bent(i));
+        sleep_ns(NS_PER_MS);
+    }
+    sleep_ns(2200 * NS_PER_MS);
+    const double lost = counted(s, "plantcast_history_lost_total");
+    assert_true(lost > 0);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &unlimited), 0);
+    historian_stop(&s->historian);
+    assert_true(counted(s, "plantcast_history_lost_total") == lost);
+    assert_int_equal(events_of(s, "gap", clock_utc_ns()), 1);
+    for (int tag = 0; tag < TAGS; tag++) {
+        struct history_series series;
+        const size_t count = points_of(s, tag, &series);
+        assert_true(count > 1 && isnan(series.points.at[count - 1].value) && !isnan(series.points.at[count - 2].value));
+    }
+}
+
 static bool has_point(const struct history_series *series, int64_t utc_ns, double value)
 {
     for (size_t i = 0; i < series->points.count; i++)
