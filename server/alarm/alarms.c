@@ -512,8 +512,8 @@ static void look_at_devices(struct alarms *alarms, struct instant now)
 }
 
 /* Returns true if a tag needs its own BAD alarm again, which was suppressed because the device's LINK alarm reported the
-   failure: the device has no longer been lost for the tag's stale time, but the tag is still Bad. The device may have returned
-   with errors only, so no tag need be usable. */
+   failure: the device has been back for the tag's stale time, but the tag is still Bad. The device may answer with errors only,
+   so possibly none of its tags is usable. */
 static bool calls_by_itself(const struct alarms *alarms, const struct alarm *alarm, int64_t mono_ns)
 {
     const struct alarm_device *device = &alarms->devices->list[alarms->devices->of_tag[alarm->tag]];
@@ -539,8 +539,8 @@ static enum device_status status_of(const struct alarms *alarms, size_t tag, uin
     return lost ? DEVICE_GONE : device_status_of(quality);
 }
 
-/* Returns true if alarms ignore a sample for now. A derived tag repeats the quality of its inputs as a sample: without a sample of
-   its own so far, it waits like them for a first reading (is_still_waiting()). */
+/* Returns true if alarms ignore a sample for now. A derived tag's sample repeats the Bad quality of its inputs. Until the derived tag
+   has had a sample of its own, such a sample does not count: the tag waits for its first reading (is_still_waiting()). */
 static bool is_ignored(const struct alarms *alarms, const struct sample_event *event)
 {
     if (event->quality == QUALITY_BAD_WAITING)
@@ -640,7 +640,7 @@ static void look_at_qualities(struct alarms *alarms, const struct snapshot *now)
         uint32_t quality = reading->quality == QUALITY_BAD_WAITING ? QUALITY_BAD_NO_COMMUNICATION : reading->quality;
         if (is_no_news(alarms, i, quality))
             continue;
-        alarms->seen[i].sampled = true;
+        alarms->seen[i].sampled = true; /* the waiting time is over: is_ignored() must not drop the event */
         alarms->noticed[count++] =
             (struct sample_event){ (int)i, quality_is_bad(quality) ? NAN : reading->value, quality, now->taken_mono_ns, now->taken_utc_ns };
     }
@@ -714,7 +714,8 @@ enum refusal_code alarms_act(struct alarms *alarms, int index, const struct alar
              &(struct alarm_change){ .event = act->event, .utc_ns = now.utc_ns, .value = NAN, .who = act->who, .reason = act->reason },
              now.mono_ns);
     if (outcome == ALARM_CHANGED) {
-        alarm->until_restored &= !shelves;
+        if (shelves)
+            alarm->until_restored = false;
         alarms_watch(alarms, index);
         return REFUSAL_NONE;
     }

@@ -44,18 +44,18 @@ static void take(struct alarms *alarms, int index, const struct alarm *from)
 
 void alarms_restore(struct alarms *alarms, int index, const struct alarm *saved, struct instant now)
 {
-    struct alarm from = *saved;
+    struct alarm *alarm = &alarms->list[index], from = *saved;
     /* the shelving time may have ended while the daemon was not running; the next alarms_tick() then ends the shelving, because
        it is set to end in 1 ns. If the clock is years behind, the shelving still ends after the longest time allowed */
     int64_t rest_ns = from.until.utc_ns > now.utc_ns ? from.until.utc_ns - now.utc_ns : 1;
     if (from.until.utc_ns)
         from.until.mono_ns = now.mono_ns + (rest_ns > ALARM_LONGEST_SHELF_NS ? ALARM_LONGEST_SHELF_NS : rest_ns);
-    alarms->list[index].until_restored = true;
-    alarms->list[index].acknowledged_there = alarms->list[index].rule.forgets && from.state.active && !from.state.unacknowledged;
-    alarms->list[index].acknowledgement_bad = true; /* until the acknowledgement bit's first usable sample */
+    alarm->until_restored = true;
+    alarm->acknowledged_there = alarm->rule.forgets && from.state.active && !from.state.unacknowledged;
+    alarm->acknowledgement_bad = true; /* until the acknowledgement bit's first usable sample */
     /* held true: the alarm keeps its restored state until its tag's next sample; BAD and LINK alarms are never held */
-    alarms->list[index].held = alarms->list[index].kind != ALARM_BAD && alarms->list[index].kind != ALARM_LINK;
-    alarms->list[index].raised_mono_ns = now.mono_ns - (from.raised_utc_ns ? now.utc_ns - from.raised_utc_ns : 0);
+    alarm->held = alarm->kind != ALARM_BAD && alarm->kind != ALARM_LINK;
+    alarm->raised_mono_ns = now.mono_ns - (from.raised_utc_ns ? now.utc_ns - from.raised_utc_ns : 0);
     take(alarms, index, &from);
 }
 
@@ -70,8 +70,8 @@ double alarm_value_in_unit(double value, const char *was, const char *is)
     return *was && *is && units_compare(was, is, &change) > UNITS_CONVERT ? NAN : unit_change_value(&change, value);
 }
 
-/* Copies the newest sample of each tag from the alarms of the old plant. Also copies what the tag last told about its device, if
-   the tag still belongs to the same device. */
+/* Copies the newest sample of each tag from the alarms of the old plant. Also copies the tag's device status, if the
+   tag still belongs to the same device. */
 static void adopt_seen(struct alarms *alarms, const struct alarms *before)
 {
     for (size_t i = 0; i < before->plant->tag_count; i++) {

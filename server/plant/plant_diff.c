@@ -97,14 +97,19 @@ static bool same_scale(const struct tag_scale *a, const struct tag_scale *b)
            a->scaled_high == b->scaled_high && a->negate == b->negate && a->ne43 == b->ne43 && same_sentinels(a, b);
 }
 
-/* The parsed members also show a change of the source's keys that addresses depend on, such as `address_base` or `topic`. */
+static int modbus_unit_of(const struct plant *plant, const struct plant_tag *tag)
+{
+    return tag->source < 0 ? -1 : plant_tag_modbus_unit(plant, tag);
+}
+
+/* Returns whether two tags read the same address of their source. Compares the parsed members too, because they also depend on the
+   source's keys, such as `address_base` and `topic`. */
 static bool same_address(const struct plant *before, const struct plant_tag *a, const struct plant *after, const struct plant_tag *b)
 {
     const struct tag_signal *x = &a->signal, *y = &b->signal;
-    int unit_a = a->source < 0 ? -1 : plant_tag_modbus_unit(before, a), unit_b = b->source < 0 ? -1 : plant_tag_modbus_unit(after, b);
     return same_text(x->address, y->address) && same_text(x->topic, y->topic) && same_text(x->path, y->path) && x->element == y->element &&
-           unit_a == unit_b && x->table == y->table && x->register_index == y->register_index && x->bit == y->bit && x->type == y->type &&
-           x->byte_order == y->byte_order;
+           modbus_unit_of(before, a) == modbus_unit_of(after, b) && x->table == y->table && x->register_index == y->register_index &&
+           x->bit == y->bit && x->type == y->type && x->byte_order == y->byte_order;
 }
 
 static bool same_unit(const struct plant_tag *a, const struct plant_tag *b)
@@ -115,7 +120,7 @@ static bool same_unit(const struct plant_tag *a, const struct plant_tag *b)
     return !changed && (!a->unit || !b->unit || units_compare(a->unit, b->unit, &change) == UNITS_SAME);
 }
 
-bool plant_same_signal(const struct plant *before, const struct plant_tag *a, const struct plant *after, const struct plant_tag *b)
+static bool same_signal(const struct plant *before, const struct plant_tag *a, const struct plant *after, const struct plant_tag *b)
 {
     return same_text(source_of(before, a), source_of(after, b)) && same_address(before, a, after, b) && same_scale(&a->scale, &b->scale) &&
            same_unit(a, b);
@@ -126,7 +131,7 @@ static bool keeps_signal(const struct plant *before, const struct plant *after, 
     int was = plant_find_tag(before, tag->name);
     const int *inputs = NULL;
     size_t count = tag->expression ? expression_inputs(tag->expression, &inputs) : 0;
-    bool keeps = was >= 0 && plant_same_signal(before, &before->tags[was], after, tag);
+    bool keeps = was >= 0 && same_signal(before, &before->tags[was], after, tag);
     for (size_t i = 0; keeps && i < count; i++)
         keeps = kept[inputs[i]];
     return keeps;

@@ -19,8 +19,8 @@ struct plant_sensor {
 
 /* Lists the tags that have this asset and a group, in the order of the tag list; free *out with mem_free(). Returns their number. */
 size_t plant_sensors(const struct plant *plant, int asset, struct plant_sensor **out);
-/* Returns whether no other one of an asset's `count` sensors belongs to the group of sensor number `sensor`. Does not count those whose
-   place is assumed (only their equipment is known). */
+/* Returns whether the asset has no other sensor of the same group as sensor number `sensor`. Sensors with an assumed place do not
+   count. */
 bool plant_sensor_is_alone(const struct plant *plant, const struct plant_sensor *sensors, size_t count, size_t sensor);
 
 #endif

@@ -415,8 +415,8 @@ void store_tags_dead(struct store *store, const int *tags, size_t count, int64_t
     pthread_mutex_unlock(&store->lock);
 }
 
-/* Makes a Good reading Uncertain. It still shows that its device answers, so that a device of which other tags are Bad does not
-   count as failed. */
+/* Makes a Good reading Uncertain. An Uncertain tag still counts as usable for its device (device_status_of()), so the device's LINK
+   alarm is not raised. */
 static void doubt(struct store *store, size_t tag, int64_t now_mono_ns)
 {
     struct held *held = &store->tags[tag];

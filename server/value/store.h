@@ -35,7 +35,7 @@ enum { STORE_LISTENERS = 6 };
 struct store *store_create(const struct plant *plant); /* Creates a store for the tags of `plant`, which must outlive the store. */
 void store_destroy(struct store **store);
 /* After a reload: copies link states of sources with equal names from the old plant's store, and readings of tags with equal
-   names that still get their values in the same way (plant_same_signal()). The first sample of such a tag replaces the copied
+   names that still get their values in the same way (plant_kept_signals()). The first sample of such a tag replaces the copied
    reading, even if the sample is older. Call it before a listener is added. */
 void store_adopt(struct store *store, struct store *before);
 /* Adds a listener for samples; a store has at most STORE_LISTENERS. */
@@ -79,8 +79,8 @@ void store_tags_lost(struct store *store, const int *tags, size_t count, int64_t
 /* Makes some tags Bad_CommunicationError immediately, even if their last values are recent, because these values must no longer be used. */
 void store_tags_dead(struct store *store, const int *tags, size_t count, int64_t now_mono_ns);
 /* Records that newer values of some tags may have been missed, although their source can be read. Their last values become Bad as
-   after store_tags_dead() if `dead` is set; otherwise, Good values become Uncertain_LastUsableValue, and Bad stale_s after
-   their arrival. Tags without a value do not change. */
+   after store_tags_dead() if `dead` is set. Otherwise, Good values become Uncertain_LastUsableValue. They become Bad when stale_s
+   has passed since their arrival. Tags without a value do not change. */
 void store_values_missed(struct store *store, const int *tags, size_t count, bool dead, int64_t now_mono_ns);
 /* Records that a source can be read again. Each of its tags is usable again from its next sample on. */
 void store_link_up(struct store *store, int source, int64_t now_mono_ns);

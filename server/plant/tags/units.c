@@ -291,11 +291,18 @@ static void normalise(const char *name, char out[NAME_BYTES])
     out[length] = 0;
 }
 
+/* Returns the name after `at` in a list "a|b|c"; NULL: `at` is the last one. */
+static const char *next_name(const char *at)
+{
+    const char *bar = strchr(at, '|');
+    return bar ? bar + 1 : NULL;
+}
+
 /* Returns whether a unit has this name, comparing exactly or ignoring case. */
 static bool has_name(const struct unit_entry *unit, const char *name, bool exact)
 {
     size_t bytes = strlen(name);
-    for (const char *at = unit->names; at; at = strchr(at, '|') ? strchr(at, '|') + 1 : NULL)
+    for (const char *at = unit->names; at; at = next_name(at))
         if (strcspn(at, "|") == bytes && (exact ? !strncmp(at, name, bytes) : !strncasecmp(at, name, bytes)))
             return true;
     return false;
@@ -305,9 +312,9 @@ static bool has_name(const struct unit_entry *unit, const char *name, bool exact
  * MA is a megaampere, not the milliampere of the table. */
 static bool has_other_prefix(const struct unit_entry *unit, const char *name)
 {
-    for (const char *at = unit->names; at; at = strchr(at, '|') ? strchr(at, '|') + 1 : NULL) {
-        size_t bytes = strcspn(at, "|");
-        if (bytes != strlen(name) || *at == *name || !strchr("mM", *at) || strncmp(at + 1, name + 1, bytes - 1) != 0)
+    size_t bytes = strlen(name);
+    for (const char *at = unit->names; at; at = next_name(at)) {
+        if (strcspn(at, "|") != bytes || *at == *name || !strchr("mM", *at) || strncmp(at + 1, name + 1, bytes - 1) != 0)
             continue;
         for (size_t i = 0; i < UNIT_COUNT; i++)
             if (units[i].kind == unit->kind && has_name(&units[i], name + 1, false))

@@ -49,10 +49,10 @@ static void on_subscribed(void *arg)
              mqtt->base.config->port);
 }
 
-/* Marks the readings that the store has from before this source's first connection: from before a reload, or from a core. Newer
-   messages may have been missed since, even with a persistent session: the broker keeps no messages that were published with
-   QoS 0. Sparkplug readings become Bad, because they are valid only after a birth certificate; other readings become
-   Uncertain until their next value, or until they are stale. */
+/* Called at each connection. Marks readings that the store took from the plant before a reload, or from a core: newer messages may
+   have been missed, even with a persistent session: the broker keeps no messages that were published with QoS 0. (After a lost
+   connection, link_lost() has already made all tags Bad.) Sparkplug readings become Bad, because they are valid only after a birth
+   certificate; other readings become Uncertain until their next value, or until they are stale. */
 static void note_missed(struct mqtt_source *mqtt)
 {
     store_values_missed(mqtt->base.store, mqtt->topics.tags, mqtt->topics.tag_count, mqtt->sparkplug != NULL, clock_mono_ns());
