@@ -32,7 +32,6 @@ struct delivery {
     const struct plant_notify *notify;
     CURLM *multi;
     struct transfer *transfers; /* by recipient: its transfer */
-    int *refused_mailboxes;     /* by recipient: how often a delivered mail was refused for a mailbox */
 };
 
 struct delivery *delivery_create(struct log *log, const struct plant_notify *notify)
@@ -41,7 +40,6 @@ struct delivery *delivery_create(struct log *log, const struct plant_notify *not
     delivery->log = log;
     delivery->notify = notify;
     delivery->transfers = mem_array(notify->recipient_count + 1, sizeof(*delivery->transfers));
-    delivery->refused_mailboxes = mem_array(notify->recipient_count + 1, sizeof(*delivery->refused_mailboxes));
     if (curl_global_init(CURL_GLOBAL_DEFAULT) != CURLE_OK || !(delivery->multi = curl_multi_init())) {
         log_err(log, "notify: messages cannot be sent: libcurl cannot be initialised");
         delivery_destroy(&delivery);
@@ -69,7 +67,6 @@ void delivery_destroy(struct delivery **pointer)
         end_transfer(delivery, &delivery->transfers[i]);
     curl_multi_cleanup(delivery->multi);
     mem_free(delivery->transfers);
-    mem_free(delivery->refused_mailboxes);
     mem_free(delivery);
     *pointer = NULL;
 }
@@ -124,7 +121,7 @@ static int hear_refusals(CURL *handle, curl_infotype type, char *bytes, size_t c
     else if (type == CURLINFO_HEADER_OUT)
         transfer->mailbox[0] = 0;
     else if (type == CURLINFO_HEADER_IN && transfer->mailbox[0] && length > 0 && (bytes[0] == '4' || bytes[0] == '5')) {
-        transfer->refused_now++;
+        transfer->refused_now += length < 4 || bytes[3] != '-'; /* only the last line of a reply has no '-' after its code */
         log_warn(transfer->log, "notify: %s: the mail server refused %s: %.*s", transfer->name, transfer->mailbox, length, bytes);
     }
     return 0;
@@ -226,30 +223,32 @@ char *delivery_start(struct delivery *delivery, int recipient, char *body, size_
 
 /* --- waiting for results ---------------------------------------------------------------------------------------------------- */
 
+/* Returns the HTTP status of the server's answer; -1: the transfer is not HTTP. */
+static long http_status(const struct transfer *transfer)
+{
+    long status = 0;
+    char *scheme = NULL;
+    curl_easy_getinfo(transfer->handle, CURLINFO_RESPONSE_CODE, &status);
+    curl_easy_getinfo(transfer->handle, CURLINFO_SCHEME, &scheme);
+    return scheme && !strncasecmp(scheme, "http", 4) ? status : -1;
+}
+
 /* Returns NULL if the server accepted the message; else the reason, which the caller frees with mem_free(). A redirection counts as
    failure, because it may lead to a login page. */
 static char *why_not(const struct transfer *transfer, CURLcode code)
 {
-    long status = 0;
-    char *scheme = NULL;
     if (code != CURLE_OK)
         return mem_strdup(transfer->why[0] ? transfer->why : curl_easy_strerror(code));
-    curl_easy_getinfo(transfer->handle, CURLINFO_RESPONSE_CODE, &status);
-    curl_easy_getinfo(transfer->handle, CURLINFO_SCHEME, &scheme);
-    bool is_http = scheme && !strncasecmp(scheme, "http", 4);
-    return is_http && (status < 200 || status > 299) ? mem_printf("the server answered with HTTP status %ld", status) : NULL;
+    long status = http_status(transfer);
+    return status != -1 && (status < 200 || status > 299) ? mem_printf("the server answered with HTTP status %ld", status) : NULL;
 }
 
 /* Returns true if the server refused the message itself: the mail server's reply to it, or an HTTP status that concerns its content.
    HTTP status 400 is not one: web servers also send it if the URL has http: instead of https:. */
 static bool is_refused(const struct transfer *transfer)
 {
-    long status = 0;
-    char *scheme = NULL;
-    curl_easy_getinfo(transfer->handle, CURLINFO_RESPONSE_CODE, &status);
-    curl_easy_getinfo(transfer->handle, CURLINFO_SCHEME, &scheme);
-    bool is_http = scheme && !strncasecmp(scheme, "http", 4);
-    return is_http ? status == 413 || status == 422 : transfer->is_refused;
+    long status = http_status(transfer);
+    return status == -1 ? transfer->is_refused : status == 413 || status == 422;
 }
 
 void delivery_wait(struct delivery *delivery, int timeout_ms, delivery_ended *each, void *arg)
@@ -266,10 +265,9 @@ void delivery_wait(struct delivery *delivery, int timeout_ms, delivery_ended *ea
         curl_easy_getinfo(message->easy_handle, CURLINFO_PRIVATE, (char **)&transfer);
         char *why = why_not(transfer, code);
         bool refused = why && is_refused(transfer);
-        if (!why)
-            delivery->refused_mailboxes[transfer - delivery->transfers] += transfer->refused_now;
+        int refused_mailboxes = why ? 0 : transfer->refused_now;
         end_transfer(delivery, transfer);
-        each(arg, (int)(transfer - delivery->transfers), why, refused);
+        each(arg, (int)(transfer - delivery->transfers), why, refused, refused_mailboxes);
         mem_free(why);
     }
 }
@@ -277,9 +275,4 @@ void delivery_wait(struct delivery *delivery, int timeout_ms, delivery_ended *ea
 void delivery_wake(struct delivery *delivery)
 {
     curl_multi_wakeup(delivery->multi);
-}
-
-int delivery_refused_mailboxes(const struct delivery *delivery, int recipient)
-{
-    return delivery->refused_mailboxes[recipient];
 }

@@ -20,12 +20,12 @@ bool delivery_is_idle(const struct delivery *delivery, int recipient);
    sending cannot start (free with mem_free()). */
 char *delivery_start(struct delivery *delivery, int recipient, char *body, size_t bytes);
 /* Called for a message that was sent or failed. why: NULL if the recipient's server accepted the message, else the reason.
-   is_refused: true: the server refuses this message itself (for example its size), so that sending it again is useless. */
-typedef void delivery_ended(void *arg, int recipient, const char *why, bool is_refused);
+   is_refused: true: the server refuses this message itself (for example its size), so that sending it again is useless.
+   refused_mailboxes: number of mailboxes that the mail server refused, although it accepted the mail for others; 0 if the message
+   failed. */
+typedef void delivery_ended(void *arg, int recipient, const char *why, bool is_refused, int refused_mailboxes);
 /* Waits up to timeout_ms for network activity, and calls each() for every message that was sent or failed. */
 void delivery_wait(struct delivery *delivery, int timeout_ms, delivery_ended *each, void *arg);
-/* Returns how often the mail server has refused a mailbox of the recipient. Counts only mails that it accepted for other mailboxes. */
-int delivery_refused_mailboxes(const struct delivery *delivery, int recipient);
 void delivery_wake(struct delivery *delivery); /* Makes delivery_wait() return. Call from any thread. */
 
 #endif

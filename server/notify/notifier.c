@@ -20,7 +20,6 @@ enum { TICK_MS = 1000, REST_MS = 60000, FILE_BYTES = 64 << 20 };
 
 struct recipient_counters {
     counter *sent, *failed, *waiting, *mailboxes;
-    int mailboxes_before; /* value of delivery_refused_mailboxes() that `mailboxes` already includes */
 };
 
 struct notifier {
@@ -129,17 +128,21 @@ static const struct notify_recipient *recipient_of(const struct notifier *notifi
     return &notifier->params.plant->notify->recipients[recipient];
 }
 
-static void on_end(void *arg, int recipient, const char *why, bool is_refused)
+static void on_end(void *arg, int recipient, const char *why, bool is_refused, int refused_mailboxes)
 {
     struct notifier *notifier = arg;
     struct log *log = notifier->params.log;
     const char *id = recipient_of(notifier, recipient)->id;
-    is_refused = is_refused && recipient_of(notifier, recipient)->kind != NOTIFY_ALERTMANAGER; /* the next message has all alarms anyway */
+    /* an Alertmanager message is never shortened: each message must contain all active alarms */
+    is_refused = is_refused && recipient_of(notifier, recipient)->kind != NOTIFY_ALERTMANAGER;
     if (why) {
         (is_refused ? outbox_refused : outbox_failed)(notifier->outbox, recipient, now_us());
         counter_inc(notifier->counters[recipient].failed, 1);
         if (is_refused)
-            log_err(log, "notify: %s refuses a message: %s; the message is shortened, or dropped if it is short", id, why);
+            log_err(log,
+                    "notify: %s refuses a message: %s; the daemon now sends only its %d most urgent alarms, or drops the message if it has "
+                    "no more",
+                    id, why, OUTBOX_SHORT);
         else if (!notifier->failing[recipient])
             log_err(log, "notify: %s cannot be reached: %s; messages are queued and sent later", id, why);
     } else {
@@ -147,6 +150,7 @@ static void on_end(void *arg, int recipient, const char *why, bool is_refused)
         /* saves the outbox at once: if the daemon were killed first, it would send the message again after its restart */
         save(notifier);
         counter_inc(notifier->counters[recipient].sent, 1);
+        counter_inc(notifier->counters[recipient].mailboxes, refused_mailboxes);
         if (notifier->failing[recipient])
             log_info(log, "notify: %s accepts messages again", id);
     }
@@ -167,7 +171,7 @@ static void send_due(struct notifier *notifier)
         save(notifier);
         char *why = delivery_start(notifier->delivery, i, body, bytes);
         if (why)
-            on_end(notifier, i, why, false);
+            on_end(notifier, i, why, false, 0);
         mem_free(why);
     }
 }
@@ -188,12 +192,8 @@ static void on_alarm(void *arg, const struct alarm *alarm)
 
 static void count(struct notifier *notifier)
 {
-    for (int i = 0; i < (int)notifier->params.plant->notify->recipient_count; i++) {
+    for (int i = 0; i < (int)notifier->params.plant->notify->recipient_count; i++)
         counter_set(notifier->counters[i].waiting, outbox_counts(notifier->outbox, i).waiting);
-        int mailboxes = delivery_refused_mailboxes(notifier->delivery, i);
-        counter_inc(notifier->counters[i].mailboxes, mailboxes - notifier->counters[i].mailboxes_before);
-        notifier->counters[i].mailboxes_before = mailboxes;
-    }
     int64_t lost = outbox_counts(notifier->outbox, 0).lost;
     if (lost > notifier->lost_before) {
         log_err(notifier->params.log, "notify: %lld alarm messages lost: not stored, refused, or not delivered within a day",

@@ -2,6 +2,7 @@
 /* Decides which recipients are notified of which alarms and when, and queues the notifications. */
 #include "notify/outbox_impl.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -429,10 +430,7 @@ void outbox_failed(struct outbox *outbox, int recipient, int64_t now_us)
 void outbox_refused(struct outbox *outbox, int recipient, int64_t now_us)
 {
     struct recipient_box *box = &outbox->boxes[recipient];
-    if (outbox->plant->notify->recipients[recipient].kind == NOTIFY_ALERTMANAGER) {
-        outbox_failed(outbox, recipient, now_us); /* the next message has all alarms anyway */
-        return;
-    }
+    assert(outbox->plant->notify->recipients[recipient].kind != NOTIFY_ALERTMANAGER);
     drop_alarms(outbox, box, box->batch_count > OUTBOX_SHORT ? OUTBOX_SHORT : 0);
     make_id(outbox, recipient, now_us);
     box->retry_us = 0;

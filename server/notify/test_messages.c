@@ -13,6 +13,7 @@ struct test_run {
     const struct plant *plant;
     FILE *out;
     int waiting, failed; /* waiting: number of messages that are being sent; failed: number of messages that were not accepted */
+    int refused;         /* number of mailboxes that mail servers refused */
 };
 
 /* Prints the result of one message. why: NULL if the recipient's server accepted the message, else the reason. */
@@ -26,11 +27,12 @@ static void print_result(struct test_run *run, int recipient, const char *why)
     run->failed += why != NULL;
 }
 
-static void on_end(void *arg, int recipient, const char *why, bool is_refused)
+static void on_end(void *arg, int recipient, const char *why, bool is_refused, int refused_mailboxes)
 {
     struct test_run *run = arg;
     (void)is_refused;
     print_result(run, recipient, why);
+    run->refused += refused_mailboxes;
     run->waiting--;
 }
 
@@ -57,11 +59,8 @@ int test_messages_send(struct log *log, const struct plant *plant, FILE *out)
     }
     while (run.waiting > 0)
         delivery_wait(delivery, 1000, on_end, &run);
-    int refused = 0;
-    for (int i = 0; i < (int)notify->recipient_count; i++)
-        refused += delivery_refused_mailboxes(delivery, i);
-    if (refused > 0)
-        fprintf(out, "mail servers refused %d mailbox%s: the warnings name each\n", refused, refused == 1 ? "" : "es");
+    if (run.refused > 0)
+        fprintf(out, "mail servers refused %d mailbox%s: the warnings name each\n", run.refused, run.refused == 1 ? "" : "es");
     delivery_destroy(&delivery);
-    return run.failed + refused;
+    return run.failed + run.refused;
 }

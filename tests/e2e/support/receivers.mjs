@@ -87,7 +87,7 @@ export class MailServer {
             if (verb === 'RCPT' && ['refuse', 'busy'].includes(this.mode))
                 return say(this.mode === 'refuse' ? '550 no such mailbox' : '451 later');
             if (verb === 'RCPT' && line.includes('<gone@'))
-                return say('550 5.1.1 no such mailbox');
+                return say('550-5.1.1 this is a reply of two lines:\r\n550 5.1.1 no such mailbox');
             if (verb === 'RCPT')
                 mail.to.push(line.replace(/^RCPT TO:<(.*)>.*$/i, '$1'));
             inData = verb === 'DATA';
