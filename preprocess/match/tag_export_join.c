@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Adds tags to an exported list, and handles names that occur several times: duplicates of a tag, or different tags with the
  * same name in several folders. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -9,6 +10,7 @@
 #include "base/text/text.h"
 #include "preprocess/match/fold.h"
 #include "preprocess/match/tag_export.h"
+#include "preprocess/match/tag_names.h"
 
 enum { NAMED = 5 };
 
@@ -103,26 +105,25 @@ static int by_key(const void *pa, const void *pb)
 static void say_alike(struct tag_export *list)
 {
     struct folded *all = mem_array(list->count + 1, sizeof(*all));
-    struct text names = { 0 };
-    size_t pairs = 0;
+    struct tag_names names = { 0 };
     for (size_t i = 0; i < list->count; i++)
         all[i] = (struct folded){ fold_text(list->tags[i].fields[EXPORT_NAME]), i };
     qsort(all, list->count, sizeof(*all), by_key);
     for (size_t i = 1; i < list->count; i++) {
-        if (strcasecmp(all[i].key, all[i - 1].key) != 0 || pairs++ >= NAMED)
+        char key[61], lines[60] = "";
+        if (strcasecmp(all[i].key, all[i - 1].key) != 0)
             continue;
-        text_add(&names, "%s%.60s", names.length > 0 ? ", " : "", all[i].key);
+        snprintf(key, sizeof(key), "%.60s", all[i].key);
         if (list->tags[all[i].tag].line > 0)
-            text_add(&names, " (lines %d and %d)", list->tags[all[i - 1].tag].line, list->tags[all[i].tag].line);
+            snprintf(lines, sizeof(lines), "lines %d and %d", list->tags[all[i - 1].tag].line, list->tags[all[i].tag].line);
+        tag_names_add(&names, key, "%s", lines);
     }
-    if (pairs > 0)
-        text_add(&list->remarks,
-                 "%zu tag%s from another tag only in the kind of dashes, letter widths or blanks; both tags are kept: %s%s\n", pairs,
-                 pairs == 1 ? " differs" : "s differ", names.at, pairs > NAMED ? ", ..." : "");
+    tag_names_say(&names, "tag differs from another tag only in the kind of dashes, letter widths or blanks; both tags are kept",
+                  "tags differ from another tag only in the kind of dashes, letter widths or blanks; both tags are kept", &list->remarks);
     for (size_t i = 0; i < list->count; i++)
         mem_free(all[i].key);
     mem_free(all);
-    text_finish(&names);
+    tag_names_finish(&names);
 }
 
 void tag_export_join(struct tag_export *list)

@@ -3,7 +3,6 @@
  * what a comma or dot means, because "1,500" alone may be 1.5 or 1500. */
 #include <stdio.h>
 #include <string.h>
-#include <strings.h>
 
 #include "base/mem.h"
 #include "plant/parse/number.h"
@@ -146,16 +145,14 @@ static void read_number(struct number_reading *reading, struct export_tag *tag, 
 /* Reads whether a tag's value is negated, as "1", "0" or nothing. */
 static void read_flag(struct number_reading *reading, struct export_tag *tag)
 {
-    static const char *const words[] = { "0", "1", "false", "true", "no", "yes" };
     char *text = tag->fields[EXPORT_NEGATE];
+    bool negates;
     if (!text)
         return;
-    tag->fields[EXPORT_NEGATE] = NULL;
-    for (int i = 0; i < 6; i++)
-        if (!strcasecmp(text, words[i]))
-            export_tag_set(tag, EXPORT_NEGATE, i % 2 ? "1" : "0");
-    if (!tag->fields[EXPORT_NEGATE])
+    const bool good = flag_parse(text, &negates);
+    if (!good)
         tag_names_add(&reading->wrong, tag->fields[EXPORT_NAME], "Negate Value '%.40s'", text);
+    tag->fields[EXPORT_NEGATE] = good ? mem_strdup(negates ? "1" : "0") : NULL;
     mem_free(text);
 }
 

@@ -11,9 +11,7 @@ void tag_names_add(struct tag_names *names, const char *tag, const char *detail,
     va_list ap;
     if (names->count++ >= NAMED)
         return;
-    text_add(&names->names, "%s%.120s", names->count > 1 ? ", " : "", tag);
-    if (!*detail)
-        return;
+    text_add(&names->names, "%s%s", names->count > 1 ? ", " : "", tag);
     size_t before = names->names.length;
     text_add(&names->names, " (");
     va_start(ap, detail);

@@ -141,15 +141,28 @@ bool tag_rows_read(struct tag_rows *rows, const char *path, char why[MATCH_WHY_B
     return true;
 }
 
-void tag_rows_finish(struct tag_rows *rows)
+static void finish_names(struct tag_rows *rows)
+{
+    struct tag_names *const lists[] = { &rows->types, &rows->scalings, &rows->ranges, &rows->limits, &rows->differing };
+    for (size_t i = 0; i < sizeof(lists) / sizeof(*lists); i++)
+        tag_names_finish(lists[i]);
+}
+
+static void finish_rows(struct tag_rows *rows)
 {
     for (size_t i = 0; i < rows->count; i++)
         table_row_finish(&rows->at[i]);
     mem_free(rows->at);
     mem_free(rows->by_name);
-    struct tag_names *const lists[] = { &rows->types, &rows->scalings, &rows->ranges, &rows->limits, &rows->differing };
-    for (size_t i = 0; i < sizeof(lists) / sizeof(*lists); i++)
-        tag_names_finish(lists[i]);
+    finish_names(rows);
+}
+
+void tag_rows_finish(struct tag_rows *rows)
+{
+    if (rows->fresh)
+        finish_rows(rows->fresh);
+    mem_free(rows->fresh);
+    finish_rows(rows);
     *rows = (struct tag_rows){ 0 };
 }
 
@@ -209,13 +222,15 @@ static const char *type_of(const char *type)
     return found;
 }
 
-/* Returns whether an exported tag is omitted from the tag list: it is not numeric, or its address or data type is invalid for its
- * source. */
-static bool is_left_out(struct tag_rows *rows, const struct export_tag *tag, const struct tag_source *source)
+/* Returns whether an exported tag is omitted from the tag list. Adds the tag to `types` if its data type is the reason. type: type_of()
+ * the tag. */
+static bool is_left_out(struct tag_names *types, const struct tag_row_input *input, const char *type)
 {
+    const struct export_tag *tag = input->tag;
+    const struct tag_source *source = input->source;
     struct modbus_address address;
     char why[200];
-    const char *text = tag->fields[EXPORT_ADDRESS], *stated = tag->fields[EXPORT_TYPE], *type = type_of(stated);
+    const char *text = tag->fields[EXPORT_ADDRESS], *stated = tag->fields[EXPORT_TYPE];
     if (type && !strcmp(type, "String"))
         return true;
     if (!source->modbus)
@@ -227,17 +242,17 @@ static bool is_left_out(struct tag_rows *rows, const struct export_tag *tag, con
     if (!whole || (type && !bit)) /* a single bit is Boolean, whatever its type in the export */
         return false;
     if (type)
-        tag_names_add(&rows->types, tag->fields[EXPORT_NAME], "%.40s at %.40s, not at a bit such as %.40s.0", stated, text, text);
+        tag_names_add(types, tag->fields[EXPORT_NAME], "%.40s at %.40s, not at a bit such as %.40s.0", stated, text, text);
     else
-        tag_names_add(&rows->types, tag->fields[EXPORT_NAME], "%.60s", stated);
+        tag_names_add(types, tag->fields[EXPORT_NAME], "%.60s", stated);
     return true;
 }
 
-static void put_address(struct tag_rows *rows, struct table_row *row, const struct tag_row_input *input)
+static void put_address(struct tag_rows *rows, struct table_row *row, const struct tag_row_input *input, const char *type)
 {
     struct modbus_address address;
     char why[200];
-    const char *text = input->tag->fields[EXPORT_ADDRESS], *type = type_of(input->tag->fields[EXPORT_TYPE]);
+    const char *text = input->tag->fields[EXPORT_ADDRESS];
     if (!input->source->id)
         return;
     bool one_bit = input->source->modbus && address_parse(text, input->source->address_base, &address, why) &&
@@ -247,40 +262,42 @@ static void put_address(struct tag_rows *rows, struct table_row *row, const stru
     put(rows, row, SOURCE, input->source->id);
 }
 
-/* The scale of an exported tag: raw value and scaled value at its two ends. */
+struct tag_end {
+    double value;
+    char text[64];
+};
+
+/* The range of an exported tag's raw or scaled values. */
 struct tag_range {
     bool stated;
-    double low, high;
-    char texts[2][64];
+    struct tag_end ends[2]; /* low, high */
 };
 
 static void read_ends(const struct export_tag *tag, enum export_field field, struct tag_range *range)
 {
-    const char *const *cells = (const char *const *)&tag->fields[field];
-    for (int i = 0; i < 2; i++)
-        snprintf(range->texts[i], sizeof(range->texts[i]), "%s", cells[i]);
-    range->stated = number_parse(cells[0], &range->low) == NUMBER_GOOD && number_parse(cells[1], &range->high) == NUMBER_GOOD;
+    *range = (struct tag_range){ .stated = true };
+    for (int i = 0; i < 2; i++) {
+        const char *cell = tag->fields[(int)field + i];
+        snprintf(range->ends[i].text, sizeof(range->ends[i].text), "%s", cell);
+        range->stated &= number_parse(cell, &range->ends[i].value) == NUMBER_GOOD;
+    }
 }
 
 static void swap_ends(struct tag_range *range)
 {
-    char text[sizeof(range->texts[0])];
-    double low = range->low;
-    range->low = range->high;
-    range->high = low;
-    memcpy(text, range->texts[0], sizeof(text));
-    memcpy(range->texts[0], range->texts[1], sizeof(text));
-    memcpy(range->texts[1], text, sizeof(text));
+    const struct tag_end low = range->ends[0];
+    range->ends[0] = range->ends[1];
+    range->ends[1] = low;
 }
 
 static void negate_ends(struct tag_range *range)
 {
-    double *const ends[] = { &range->low, &range->high };
     for (int i = 0; i < 2; i++) {
-        *ends[i] = *ends[i] == 0 ? 0 : -*ends[i];
-        char *text = range->texts[i], copy[sizeof(range->texts[0])];
-        snprintf(copy, sizeof(copy), "%s%s", *ends[i] < 0 ? "-" : "", text + (*text == '-' || *text == '+'));
-        memcpy(text, copy, sizeof(copy));
+        struct tag_end *end = &range->ends[i];
+        const struct tag_end before = *end;
+        const char *digits = before.text + (*before.text == '-' || *before.text == '+');
+        end->value = before.value == 0 ? 0 : -before.value;
+        snprintf(end->text, sizeof(end->text), "%s%s", end->value < 0 ? "-" : "", digits);
     }
 }
 
@@ -288,27 +305,29 @@ static void negate_ends(struct tag_range *range)
  * negative values, and *negate changes. Returns NULL, or why this is impossible. */
 static const char *straighten(bool linear, struct tag_range *raw, struct tag_range *scaled, bool *negate)
 {
-    if (raw->low == raw->high)
+    if (raw->ends[0].value == raw->ends[1].value)
         return "Raw Low equals Raw High";
-    if (scaled->low == scaled->high)
+    if (scaled->ends[0].value == scaled->ends[1].value)
         return "Scaled Low equals Scaled High";
-    if (raw->low > raw->high) {
+    if (raw->ends[0].value > raw->ends[1].value) {
         if (!linear)
             return "Raw Low is above Raw High";
         swap_ends(raw);
         swap_ends(scaled);
     }
-    if (scaled->low > scaled->high) {
+    if (scaled->ends[0].value > scaled->ends[1].value) {
         negate_ends(scaled);
         *negate = !*negate;
     }
     return NULL;
 }
 
-/* Finds what a tag's row states about scaling: "Linear", "Square Root" or "". *why: why the tag's scaling is left out; "": it is not. */
-static const char *find_scaling(const struct export_tag *tag, struct tag_range *raw, struct tag_range *scaled, bool *negate, char why[120])
+/* Returns the row's cell Scaling: "Linear", "Square Root" or "". *why receives the reason if the export's scaling cannot be used,
+ * else "". */
+static const char *find_scaling(const struct export_tag *tag, const char *type, struct tag_range *raw, struct tag_range *scaled,
+                                bool *negate, char why[120])
 {
-    const char *text = tag->fields[EXPORT_SCALING], *type = type_of(tag->fields[EXPORT_TYPE]), *bent;
+    const char *text = tag->fields[EXPORT_SCALING], *bent;
     char *key = fold_key(text);
     bool linear = !strcmp(key, "linear"), root = !strcmp(key, "squareroot") || !strcmp(key, "sqrt"),
          inverts = !strcmp(key, "bitinversion") && type && !strcasecmp(type, "Boolean"),
@@ -319,7 +338,8 @@ static const char *find_scaling(const struct export_tag *tag, struct tag_range *
     read_ends(tag, EXPORT_RAW_LOW, raw);
     read_ends(tag, EXPORT_SCALED_LOW, scaled);
     if (!linear && !root) {
-        bool another = raw->stated && scaled->stated && (raw->low != scaled->low || raw->high != scaled->high);
+        bool another =
+            raw->stated && scaled->stated && (raw->ends[0].value != scaled->ends[0].value || raw->ends[1].value != scaled->ends[1].value);
         if (!none && !inverts)
             snprintf(why, 120, "Scaling '%.60s'", text);
         else if (!*text && another)
@@ -334,29 +354,29 @@ static const char *find_scaling(const struct export_tag *tag, struct tag_range *
     return *why ? "" : linear ? "Linear" : "Square Root";
 }
 
-static void put_scaling(struct tag_rows *rows, struct table_row *row, const struct export_tag *tag)
+static void put_scaling(struct tag_rows *rows, struct table_row *row, const struct export_tag *tag, const char *type)
 {
     struct tag_range raw, scaled;
     bool negate;
     char why[120];
-    const char *scaling = find_scaling(tag, &raw, &scaled, &negate, why);
+    const char *scaling = find_scaling(tag, type, &raw, &scaled, &negate, why);
     if (*why)
         tag_names_add(&rows->scalings, tag->fields[EXPORT_NAME], "%s", why);
     else if (!*scaling && (*tag->fields[EXPORT_SCALED_LOW] == 0) != (*tag->fields[EXPORT_SCALED_HIGH] == 0))
         tag_names_add(&rows->ranges, tag->fields[EXPORT_NAME], "no %s", names[*tag->fields[EXPORT_SCALED_LOW] ? SCALED_HIGH : SCALED_LOW]);
-    if (!*scaling && scaled.stated && scaled.low > scaled.high)
+    if (!*scaling && scaled.stated && scaled.ends[0].value > scaled.ends[1].value)
         swap_ends(&scaled);
     put(rows, row, SCALING, scaling);
     for (int i = 0; i < 2; i++) {
         if (*scaling)
-            put(rows, row, RAW_LOW + i, raw.texts[i]);
-        if (scaled.stated && scaled.low < scaled.high)
-            put(rows, row, SCALED_LOW + i, scaled.texts[i]);
+            put(rows, row, RAW_LOW + i, raw.ends[i].text);
+        if (scaled.stated && scaled.ends[0].value < scaled.ends[1].value)
+            put(rows, row, SCALED_LOW + i, scaled.ends[i].text);
     }
     put(rows, row, NEGATE, negate ? "1" : "");
 }
 
-/* Writes a tag's alarm limits to its row. Writes no limit if they are not in ascending order, because any one may be wrong. */
+/* Writes a tag's alarm limits to its row. Writes no limit if they are not in ascending order, because each one may be wrong. */
 static void put_limits(struct tag_rows *rows, struct table_row *row, const struct export_tag *tag)
 {
     int before = -1;
@@ -401,10 +421,10 @@ static void put_equipment(struct tag_rows *rows, struct table_row *row, const st
     }
 }
 
-static void put_values(struct tag_rows *rows, struct table_row *row, const struct tag_row_input *input)
+static void put_values(struct tag_rows *rows, struct table_row *row, const struct tag_row_input *input, const char *type)
 {
-    put_address(rows, row, input);
-    put_scaling(rows, row, input->tag);
+    put_address(rows, row, input, type);
+    put_scaling(rows, row, input->tag, type);
     put(rows, row, UNITS, input->tag->fields[EXPORT_UNIT]);
     put_limits(rows, row, input->tag);
 }
@@ -444,7 +464,7 @@ static bool same_cell(enum column column, const char *a, const char *b, const st
     return number_parse(a, &numbers[0]) == NUMBER_GOOD && number_parse(b, &numbers[1]) == NUMBER_GOOD && numbers[0] == numbers[1];
 }
 
-/* Returns whether a column of a new row for the tag says something: it has a text, or the export states that it is blank. */
+/* Returns whether the export states a value for the column: a text, or explicitly none. */
 static bool is_stated(const struct tag_rows *fresh, enum column column, const struct export_tag *tag)
 {
     if (*table_cell(&fresh->at[1], (int)column))
@@ -462,25 +482,39 @@ static bool is_blank(const struct tag_rows *rows, const struct table_row *row, e
     return true;
 }
 
+/* Returns a header with all columns, followed by the row that the tag would get if it were new. Kept in `rows` until the next call. */
+static const struct tag_rows *put_fresh(struct tag_rows *rows, const struct tag_row_input *input, const char *type)
+{
+    if (!rows->fresh) {
+        rows->fresh = mem_array(1, sizeof(*rows->fresh));
+        add_header(rows->fresh);
+        add_row(rows->fresh);
+    }
+    struct table_row *row = &rows->fresh->at[1];
+    table_row_finish(row);
+    finish_names(rows->fresh);
+    put_values(rows->fresh, row, input, type);
+    return rows->fresh;
+}
+
 /* Adds a tag to `differing` if its row would now be written with another address, type, scaling, unit or limit. The first such
- * column is named. Names what the export states but Plantcast cannot use, if the row has nothing in its place.
+ * column is named. Also lists scalings, ranges and limits of the export that Plantcast cannot use, if the row's own cells are blank.
  * unknown_type: the export's data type is unknown or does not fit the address. */
-static void compare(struct tag_rows *rows, const struct table_row *row, const struct tag_row_input *input, bool unknown_type)
+static void compare(struct tag_rows *rows, const struct table_row *row, const struct tag_row_input *input, const char *type,
+                    bool unknown_type)
 {
     static const enum column compared[] = {
         ADDRESS, TYPE, SCALING, RAW_LOW, RAW_HIGH, SCALED_LOW, SCALED_HIGH, NEGATE, UNITS, LL, L, H, HH
     };
     const struct export_tag *tag = input->tag;
-    struct tag_rows fresh = { 0 };
+    const struct tag_rows *fresh = put_fresh(rows, input, type);
     bool named = false;
-    add_header(&fresh);
-    put_values(&fresh, add_row(&fresh), input);
     for (size_t i = 0; i < sizeof(compared) / sizeof(*compared) && !named; i++) {
         enum column column = compared[i];
-        const char *ours = table_cell(row, find_column(rows, column)), *theirs = table_cell(&fresh.at[1], (int)column);
+        const char *ours = table_cell(row, find_column(rows, column)), *theirs = table_cell(&fresh->at[1], (int)column);
         bool is_default =
             column == TYPE && !*ours && (!input->source->modbus || !strcasecmp(theirs, "Word") || !strcasecmp(theirs, "Boolean"));
-        if (!is_stated(&fresh, column, tag) || is_default || same_cell(column, ours, theirs, input->source) ||
+        if (!is_stated(fresh, column, tag) || is_default || same_cell(column, ours, theirs, input->source) ||
             (column == SCALING && !*theirs && !strcasecmp(ours, "None")) || (column == NEGATE && !*theirs && !strcmp(ours, "0")))
             continue;
         if (!*theirs)
@@ -492,33 +526,33 @@ static void compare(struct tag_rows *rows, const struct table_row *row, const st
     if (!named && unknown_type && is_blank(rows, row, TYPE, TYPE))
         tag_names_add(&rows->differing, tag->fields[EXPORT_NAME], "%s blank, in the export %.60s", names[TYPE], tag->fields[EXPORT_TYPE]);
     if (is_blank(rows, row, SCALING, SCALING))
-        tag_names_join(&rows->scalings, &fresh.scalings);
+        tag_names_join(&rows->scalings, &fresh->scalings);
     if (is_blank(rows, row, SCALED_LOW, SCALED_HIGH))
-        tag_names_join(&rows->ranges, &fresh.ranges);
+        tag_names_join(&rows->ranges, &fresh->ranges);
     if (is_blank(rows, row, LL, HH))
-        tag_names_join(&rows->limits, &fresh.limits);
-    tag_rows_finish(&fresh);
+        tag_names_join(&rows->limits, &fresh->limits);
 }
 
 const char *tag_rows_put(struct tag_rows *rows, const struct tag_row_input *input)
 {
     const struct export_tag *tag = input->tag;
+    const char *type = type_of(tag->fields[EXPORT_TYPE]);
     int at = find_row(rows, tag->fields[EXPORT_NAME]);
-    if (at < 0 && is_left_out(rows, tag, input->source))
+    if (at < 0 && is_left_out(&rows->types, input, type))
         return NULL;
     struct table_row *row = at < 0 ? add_row(rows) : &rows->at[at];
     if (at < 0) {
         put(rows, row, NAME, tag->fields[EXPORT_NAME]);
-        put_values(rows, row, input);
+        put_values(rows, row, input, type);
         put(rows, row, DESCRIPTION, tag->fields[EXPORT_DESCRIPTION]);
         put_equipment(rows, row, input);
     } else {
-        struct tag_rows unused = { 0 };
-        bool left_out = is_left_out(&unused, tag, input->source), unknown_type = unused.types.count > 0;
-        tag_rows_finish(&unused);
+        struct tag_names types = { 0 };
+        bool left_out = is_left_out(&types, input, type), unknown_type = types.count > 0;
+        tag_names_finish(&types);
         if (!*table_cell(row, find_column(rows, ADDRESS)) && !left_out)
-            put_address(rows, row, input);
-        compare(rows, row, input, unknown_type);
+            put_address(rows, row, input, type);
+        compare(rows, row, input, type, unknown_type);
         if (may_put(input, table_cell(row, find_column(rows, ASSET))))
             put_equipment(rows, row, input);
     }

@@ -14,6 +14,7 @@ struct tag_rows {         /* zero-initialise */
     int *by_name; /* indices of the rows that the tag list had before the run, sorted by the tag's name */
     size_t known; /* number of rows that the tag list had before the run, including the header */
     char separator;
+    struct tag_rows *fresh; /* working memory of tag_rows_put(); NULL: not yet needed */
     /* For the result: names of tags whose row lacks a scaling, range or limits because those of the export cannot be used. types: tags
      * without a row, because their data type is not known or does not fit the address; differing: tags whose existing row differs from
      * the export */

@@ -105,6 +105,14 @@ TEST(test_scaling)
     }
 }
 
+TEST(test_long_names_are_named_whole)
+{
+    struct rows_run run;
+    put(&run, NULL, test_printf("Tag Name,Address,Data Type\n%0150d/TIC101,400001,F99\n", 0), &modbus);
+    expect_names("types", &run.rows.types, test_printf("%0150d/TIC101 (F99)", 0));
+    finish(&run);
+}
+
 TEST(test_ranges_with_one_end_are_named)
 {
     struct rows_run run;

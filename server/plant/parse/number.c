@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads decimal numbers with a decimal point, whatever the user's locale. */
+/* Reads numbers, which have a decimal point whatever the user's locale, and flags. */
 #include "plant/parse/number.h"
 
 #include <locale.h>
@@ -62,4 +62,15 @@ enum number_result number_parse(const char *text, double *out)
         return NUMBER_NOT_FINITE;
     *out = value;
     return NUMBER_GOOD;
+}
+
+bool flag_parse(const char *text, bool *out)
+{
+    static const char *const words[] = { "0", "1", "false", "true", "no", "yes" };
+    for (int i = 0; i < 6; i++)
+        if (!strcasecmp(text, words[i])) {
+            *out = i % 2;
+            return true;
+        }
+    return false;
 }

@@ -172,14 +172,10 @@ bool cell_number(struct tag_columns *columns, enum tag_column column, double low
 
 bool cell_flag(struct tag_columns *columns, enum tag_column column)
 {
-    static const char *const yes[] = { "1", "true", "yes" }, *const no[] = { "", "0", "false", "no" };
     const char *text = cell_text(columns, column);
-    for (size_t i = 0; i < 3; i++)
-        if (!strcasecmp(text, yes[i]))
-            return true;
-    for (size_t i = 0; i < 4; i++)
-        if (!strcasecmp(text, no[i]))
-            return false;
+    bool flag = false;
+    if (!*text || flag_parse(text, &flag))
+        return flag;
     cell_error(columns, column, "%s: expected 0 or 1, found '%.60s'", tag_column_name(column), text);
     return false;
 }
