@@ -131,8 +131,11 @@ CASE(a_device_has_its_own)
     struct message message;
     struct message_error error;
     uint64_t number = 0;
-    int64_t end_ns = clock_mono_ns() + 5 * NS_PER_S;
-    store_link_lost(s->store, 0, clock_mono_ns());
+    int64_t end_ns = clock_mono_ns() + 30 * NS_PER_S;
+    static const struct sample samples[] = { { 0, 20, QUALITY_GOOD }, { 1, 20, QUALITY_GOOD } };
+    static const int tags[] = { 0, 1 };
+    store_write(s->store, samples, 2, clock_mono_ns(), clock_utc_ns());
+    store_tags_dead(s->store, tags, 2, clock_mono_ns());
     while (alarm_service_number(s->alarm_service) < 3 && clock_mono_ns() < end_ns)
         sleep_ns(5 * NS_PER_MS);
     json_t *all = parse(alarms_text(NULL, s->alarm_service, s->plant, 5000, &number)), *link = NULL, *row;
