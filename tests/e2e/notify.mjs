@@ -40,6 +40,13 @@ async function calm(plant, extra = 0) {
     for (const tag of ['TI-1', 'TI-2', 'PI-1', ...Array.from({ length: extra }, (_, i) => `X-${i}`)])
         await set(plant, tag, limits.calm);
 }
+// Sets the additional tags above their limits while the daemon is stopped, so that the daemon then reads all of them in one poll.
+async function raiseAtOnce(plant, extra) {
+    plant.daemon.child.kill('SIGSTOP');
+    for (let i = 0; i < extra; i++)
+        await set(plant, `X-${i}`, limits.high);
+    plant.daemon.child.kill('SIGCONT');
+}
 const isCalm = (plant) => until('calm readings', async () => {
     const { tags } = await (await fetch(`http://127.0.0.1:${plant.port}/api/v1/tags?count=1000`)).json();
     return tags.every(({ value }) => value === limits.calm);
@@ -140,12 +147,7 @@ notify:
         await calm(plant, EXTRA);
         await plant.startDaemon();
         await isCalm(plant);
-        // stops the daemon while all tags are set, so that it then reads all values in one poll, however long setting them
-        // takes
-        plant.daemon.child.kill('SIGSTOP');
-        for (let i = 0; i < EXTRA; i++)
-            await set(plant, `X-${i}`, limits.high);
-        plant.daemon.child.kill('SIGCONT');
+        await raiseAtOnce(plant, EXTRA);
         const [post] = await until('a post', () => hook.posts.length > 0 && hook.posts);
         assert.equal(post.url, '/plant?x=1');
         assert.equal(post.headers.authorization, `Bearer ${Buffer.from('öpen sesame').toString('latin1')}`);
@@ -230,10 +232,7 @@ notify:
         await calm(plant, EXTRA);
         await plant.startDaemon();
         await isCalm(plant);
-        plant.daemon.child.kill('SIGSTOP');
-        for (let i = 0; i < EXTRA; i++)
-            await set(plant, `X-${i}`, limits.high);
-        plant.daemon.child.kill('SIGCONT');
+        await raiseAtOnce(plant, EXTRA);
         const [short] = await until('the shortened message', () => hook.taken.length > 0 && hook.taken);
         assert.deepEqual([short.alarms.length, short.left_out, hook.posts[0].status], [50, EXTRA - 50, 413]);
         assert.notEqual(short.id, hook.posts[0].body.id);

@@ -228,6 +228,8 @@ for (const name of ['decimalsFor', 'ageText'])
 for (const name of ['numberText', 'shortNumberText', 'changeText'])
     add('format', name, [12, 2], ENDS);
 add('format', 'decimalsOf', [{ min: 0.1, max: 1000, scale: 'log' }, 12], ENDS);
+add('format', 'valueText', [{ min: 0.1, max: 1000, scale: 'log' }, 12], ENDS);
+add('format', 'dayTime', [1e12], { ends: true, call: (ms) => format.dayTime(format.zoneClock('UTC'), ms) });
 add('format', 'timeOrDay', [1e12, 1.1e12], { ends: true, call: (...instants) => format.timeOrDay(format.zoneClock('UTC'), ...instants) });
 add('format', 'zoneClock', ['Europe/Berlin', 1e12], { ends: true, call: (zone, ms) => format.zoneClock(zone)(ms) });
 add('instant', 'fieldText', [1e15, 'Europe/Berlin'], ENDS);
@@ -274,6 +276,7 @@ add('app/toolbar', 'bandsOf', [{ group: { limits: { H: 3, L: 1 }, breaks: [1, 2]
 const reading = { value: 4, quality: 'good' }, model = { readings: [reading], group: () => ({ min: 0, max: 10, unit: 'K' }) };
 add('app/alarm_bar', 'heldSince', [{ model: { readings: [{ quality: 'bad' }], plant: { time_zone: 'UTC' }, ageMs: (_, now) => now },
     time: { atUs: null }, clockUs: () => 1e15, now: () => 1000 }, { tag: { index: 0 }, kind: 'HH' }], ENDS);
+add('app/alarm_bar', 'todayOf', [{ model: { plant: { time_zone: 'UTC' } }, clockUs: () => 1e15 }]);
 add('app/alarm_bar', 'timeOf', [{ model: { plant: { time_zone: 'UTC' } }, clockUs: () => 1e15 }, 9e14], ENDS);
 add('app/alarm_bar', 'limitText', [{ model, time: { atUs: null } }, { tag: { index: 0, unit: 'K' }, value: 5, limit: 4 }, true], ENDS);
 

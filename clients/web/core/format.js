@@ -37,6 +37,9 @@ function plainText(value, decimals) {
 // Formats a number in the reader's locale, without thousands separators, which might be read as decimal marks.
 export const numberText = (value, decimals) => (known(value) ? inLocale(plainText(value, decimals)) : '–');
 
+// Formats a value of a sensor group, with decimalsOf(group, value) decimals.
+export const valueText = (group, value) => numberText(value, decimalsOf(group, value));
+
 // Formats a number without trailing zeros.
 export const shortNumberText = (value, decimals) =>
     (known(value) ? inLocale(plainText(value, decimals).replace(/(\.\d*?)0+$/, '$1').replace(/\.$/, '')) : '–');
@@ -94,6 +97,12 @@ function makeClock(timeZone) {
             offset: offset === 'UTC+00:00' ? 'UTC' : offset,
         };
     };
+}
+
+// Returns an instant in milliseconds as its day and time. clock: from zoneClock().
+export function dayTime(clock, ms) {
+    const { day, time } = clock(ms);
+    return `${day} ${time}`;
 }
 
 // Returns an instant in milliseconds as text: its time (`digits` 5: without seconds) if it is on the same day as the instant

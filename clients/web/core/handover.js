@@ -69,12 +69,14 @@ export function journalSpan(name, nowUs, timeZone) {
 export async function readJournal(get, from, to, most = 20000) {
     const rows = [];
     for (let before = null; ;) {
-        const query = { from, to, limit: 2000, ...(before ? { before } : {}) };
-        const page = await get(query).catch((error) => ({ rows: [], failed: error.message }));
-        if (page.failed && before === null)
-            throw new Error(page.failed);
-        if (page.failed)
-            return { rows, cut: true, failed: page.failed };
+        let page;
+        try {
+            page = await get({ from, to, limit: 2000, ...(before ? { before } : {}) });
+        } catch (error) {
+            if (before === null)
+                throw error;
+            return { rows, cut: true, failed: error.message };
+        }
         rows.push(...page.rows);
         before = page.next_before ?? null;
         if (before === null || rows.length >= most)

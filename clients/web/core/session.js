@@ -81,8 +81,8 @@ export class Session {
         this.followers = { count: 0, sessions: [], names: [] }; // sessions that follow this one
         // true: asks the server for depth grids, which let the page show a picture from another camera
         this.wantsDepth = false;
-        // newest depth grids: { messages (binary), more (true: the grid of the split view's other half has not arrived), seq (text that
-        // differs between pictures) }
+        // newest depth grids: { messages (binary), more (true: the grid of the split view's other half has not arrived), seq (number
+        // of the picture that the grid belongs to) }
         this.depth = null;
         this.forget();
         // the instant shown, as the server reports it; atUs null: the present; fromUs: start of the recorded history, null: none
@@ -261,12 +261,10 @@ export class Session {
             this.follow(null);
         const own = change.group && change.group !== this.params.group ? pick(this.model?.group(change.group) ?? {}, GROUPS_OWN) : {};
         const split = change.split && { split: { ...this.params.split, ...change.split } };
-        // The next number may also be one of the session that this one has followed: forgets that session's parameters.
+        // The followed session may have used the next number, too. Forgets the parameters stored under this number.
         const next = this.paramsSeq + 1;
-        if (this.picture?.paramsSeq === next) {
-            this.remember(-1, this.shown);
-            this.picture.paramsSeq = -1;
-        }
+        if (this.picture?.paramsSeq === next)
+            this.keepShown(this.shown);
         this.asked.delete(next);
         this.remember(this.paramsSeq, this.params);
         this.params = { ...this.params, ...own, ...change, ...split, ...this.mergedSensors(change.sensors) };
@@ -283,7 +281,13 @@ export class Session {
         this.asked.set(seq, params);
     }
 
-    // Forgets the parameters that were shown or asked for before those with this number; all, if the number is not known.
+    // Keeps these parameters for the picture on the screen: gives it the number -1, which the server never sends.
+    keepShown(params) {
+        this.remember(-1, params);
+        this.picture.paramsSeq = -1;
+    }
+
+    // Forgets all parameters stored before those with the number `seq`. If `seq` is not stored, forgets all.
     forgetBefore(seq) {
         for (const earlier of this.asked.keys()) {
             if (earlier === seq)
@@ -352,9 +356,9 @@ export class Session {
             this.camera = asAsked(frame.camera);
         this.picture = { ...frame, payload: null, bytes: frame.payload?.length ?? 0, at: now };
         if (this.following && !this.asked.has(frame.paramsSeq)) {
-            // No message `following` has stated this number: it skipped it, or is still to come. Keeps the parameters shown so far.
-            this.remember(-1, shown);
-            this.picture.paramsSeq = -1;
+            // No message `following` has named this number: the server has skipped the number, or its message arrives later. The
+            // parameters shown so far stay.
+            this.keepShown(shown);
         } else
             this.forgetBefore(frame.paramsSeq);
         if (this.shown !== shown)
@@ -565,9 +569,9 @@ const HANDLERS = {
         if (seq === undefined)
             this.asked.clear();
         else if (picture) {
-            this.remember(-1, before);
-            this.remember(picture.paramsSeq, before);
-            picture.paramsSeq = -1;
+            const { paramsSeq } = picture;
+            this.keepShown(before);
+            this.remember(paramsSeq, before);
         }
         if (session === null)
             this.asked.delete(this.paramsSeq); // the followed session may have used this number, too

@@ -83,11 +83,12 @@ export function isGivenUp(bytes) {
     return there >= 0 && new DataView(data.buffer, data.byteOffset, data.length).getUint32(4, true) > there;
 }
 
-// Returns null if the message is not a depth grid, else { more (true: the grid of the split view's other half follows), seq (text that
-// differs between pictures) }. core/depth_grid.js parses the rest.
+// Returns null if the message is not a depth grid, else { more (true: the grid of the split view's other half follows), seq (number of the
+// picture that the grid belongs to; null: the message is too short) }. core/depth_grid.js parses the rest.
 export function depthGridOf(bytes) {
-    const [type, , flags, , , , , , ...seq] = new Uint8Array(bytes, 0, Math.min(12, bytes.byteLength));
-    return type === DEPTH_GRID ? { more: (flags & FLAG_OTHER_HALF) !== 0, seq: `${seq}` } : null;
+    const data = new Uint8Array(bytes), [type, , flags] = data;
+    const seq = data.length < 12 ? null : new DataView(data.buffer).getUint32(8, true);
+    return type === DEPTH_GRID ? { more: (flags & FLAG_OTHER_HALF) !== 0, seq } : null;
 }
 
 // Returns true if the frame covers the whole picture, so that nothing of the previous one remains.

@@ -3,7 +3,7 @@
 // browser. ?from and ?to as in /api/v1/history.
 import { asideOf } from '../core/alarm_actions.js';
 import { areaOf } from '../core/alarm_table.js';
-import { decimalsOf, numberText, unitText, zoneClock } from '../core/format.js';
+import { unitText, valueText, zoneClock } from '../core/format.js';
 import { hearAlarms, readJournal, sortJournal } from '../core/handover.js';
 import { ask } from '../core/history.js';
 import { Model } from '../core/model.js';
@@ -44,7 +44,7 @@ function aboutOf(model, tag) {
 
 // Returns a value and the limit that it exceeded as text, in the unit of the journal's row (null: not known), else in the tag's unit.
 function valueOf(model, tag, { value, limit, unit: was }) {
-    const group = tag && model.group(tag.group), number = (x) => numberText(x, decimalsOf(group, x));
+    const group = tag && model.group(tag.group), number = (x) => valueText(group, x);
     const unit = unitText(was === undefined ? tag?.unit || group?.unit : was ?? ''), texts = [number(value),
         limit === null ? '' : `(${number(limit)})`, unit];
     return value === null ? '' : texts.filter(Boolean).join(' ');
@@ -87,8 +87,8 @@ function asidePart(model, alarms, why) {
             alarm.untilUs ? dayTimeOf(alarm.untilUs) : '', alarm.who, alarm.reason]), why);
 }
 
-// alarms, journal: null if they could not be read; failures: { alarms, journal } has the reasons.
-function pageOf(model, notes, alarms, journal, [fromUs, toUs], failures) {
+// alarms, journal: null if they could not be read; failures: { alarms, journal } has the reasons. cut: true if one of the two is shortened.
+function pageOf(model, notes, alarms, journal, cut, [fromUs, toUs], failures) {
     const { raised, acknowledged, shelved, aside } = journal ? sortJournal(journal.rows) : {}, { active, waiting } = alarms?.counts() ?? {};
     const doneBy = ({ time_us: us, who, reason, tag, kinds }) =>
         [dayTimeOf(us), alarmOf(tag, kinds), aboutOf(model, model.tag(tag)), who, reason ?? ''];
@@ -106,7 +106,7 @@ function pageOf(model, notes, alarms, journal, [fromUs, toUs], failures) {
         formOf(Math.round((toUs - fromUs) / 3600e6)),
         make('p', { class: 'counts' }, ...counts.map(([name, n]) =>
             make('span', {}, `${say(`handover.${name}`)}: `, make('b', {}, String(n ?? '–'))))),
-        ...[journal?.failed, journal?.cut && say('handover.cut')].filter(Boolean)
+        ...[journal?.failed, cut && say('handover.cut')].filter(Boolean)
             .map((text) => make('p', { class: 'wrong' }, text)),
         part('notes', ['time', 'where', 'what', 'who', 'until'], notes.map(noteOf)),
         standingPart(model, alarms, failures.alarms), asidePart(model, alarms, failures.alarms),
@@ -136,9 +136,8 @@ async function show() {
     const model = new Model(plant);
     if (alarms)
         hearAlarms(model, alarms);
-    if (journal)
-        journal.cut ||= Boolean(alarms?.next_offset);
-    byId('handover').replaceChildren(...pageOf(model, list, alarms && model.alarms, journal, [gaps.from_us, gaps.to_us], failures));
+    const cut = Boolean(journal?.cut || alarms?.next_offset);
+    byId('handover').replaceChildren(...pageOf(model, list, alarms && model.alarms, journal, cut, [gaps.from_us, gaps.to_us], failures));
 }
 
 show().catch((error) => byId('handover').replaceChildren(make('p', { class: 'wrong' }, error.message)));

@@ -3,14 +3,14 @@
 // contain the normal page in an iframe.
 import { byEquipment } from '../core/alarm_call.js';
 import { isGone, isWaiting } from '../core/alarms.js';
-import { ageText, decimalsOf, numberText, qualityText, unitText, zoneClock } from '../core/format.js';
+import { ageText, qualityText, unitText, valueText, zoneClock } from '../core/format.js';
 import { health } from '../core/health.js';
 import { quantityText } from '../core/model.js';
 import { refusalText } from '../core/refusals.js';
 import { say } from '../core/words.js';
 import { clock } from '../app/common/clock.js';
 import { make, setText, setVariable } from '../app/common/dom.js';
-import { badge, limitText, timeOf } from '../app/alarms/alarm_bar.js';
+import { badge, limitText, timeOf, todayOf } from '../app/alarms/alarm_bar.js';
 import { SnapshotPane } from './snapshot_pane.js';
 
 // LEAST_PART: smallest scale to which the letters shrink so that a pane's content fits; LATEST_MS: time after which an alarm's
@@ -52,7 +52,7 @@ function aboutTags(session, names) {
 function valueOf({ model }, tag) {
     const { value, quality } = model.readings[tag.index], group = model.group(tag.group);
     const known = quality !== 'bad' && value !== null;
-    return known ? { known, text: numberText(value, decimalsOf(group, value)), unit: unitText(tag.unit || group?.unit) }
+    return known ? { known, text: valueText(group, value), unit: unitText(tag.unit || group?.unit) }
         : { known, text: qualityText('bad'), unit: '' };
 }
 
@@ -254,9 +254,6 @@ function AlarmsPane(pane, { session, call, title, body }) {
             say('walls.many', { count, worst: `${worst.tag.name} ${worst.kind.length > 2 ? say(`kind.${worst.kind}`) : worst.kind}` })),
         make('time', {}, timeOf(session, worst.raisedUs)));
 
-    // Returns today's date, on which the texts of times in all rows depend.
-    const today = () => zoneClock(session.model.plant.time_zone)(session.clockUs() / 1000).date;
-
     const isFull = () => body.scrollHeight > body.clientHeight + 1;
 
     // Shows as many rows as fit, and the number of alarms left out. brief() makes short rows, used if the normal rows do not
@@ -284,7 +281,7 @@ function AlarmsPane(pane, { session, call, title, body }) {
     return { tick() {
         const { alarms } = session.model, all = alarms.list(), flood = call.isFlood(all, session.clockUs());
         setText(about, ageOf(clock.now() - session.freshAt));
-        const { active, waiting } = alarms.counts(), now = JSON.stringify([flood, body.clientHeight, today(), all.map((alarm) =>
+        const { active, waiting } = alarms.counts(), now = JSON.stringify([flood, body.clientHeight, todayOf(session), all.map((alarm) =>
             [alarm.id, alarm.state, alarm.priority, alarm.raisedUs, flood ? '' : nowText(session, alarm)])]);
         if (now === said)
             return;

@@ -6,7 +6,7 @@ import { isGone } from '../core/alarms.js';
 import { projector } from '../core/camera.js';
 import { Connection } from '../core/connection.js';
 import { browserDecoding } from '../core/decoding.js';
-import { ageText, decimalsOf, numberText, unitText } from '../core/format.js';
+import { ageText, unitText, valueText } from '../core/format.js';
 import { quantityText } from '../core/model.js';
 import { viewOf } from '../core/named_views.js';
 import { inForce, placeOf as placeOfNote } from '../core/notes.js';
@@ -180,7 +180,7 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
     function markOf(alarm, value, behind) {
         const { tag } = alarm, group = words.model.group(tag.group), mark = make('i', { class: behind ? 'alarm behind' : 'alarm' });
         const said = value === null || value === undefined || !group ? ''
-            : `${numberText(value, decimalsOf(group, value))} ${unitText(tag.unit || group.unit)}`;
+            : `${valueText(group, value)} ${unitText(tag.unit || group.unit)}`;
         mark.append(badge(alarm.priority, isGone(alarm.state)), ` ${tag.name} ${said}`);
         return mark;
     }

@@ -76,6 +76,24 @@ test('the handover says what could not be read, instead of counting 0', options,
     assert.ok(wrong.every((text) => text.startsWith('could not be read: ')), wrong.join());
 });
 
+test('the handover says that the alarm list is shortened, also if the journal cannot be read', options, async () => {
+    await page.route('**/api/v1/alarms?**', async (route) => {
+        const response = await route.fetch();
+        await route.fulfill({ response, json: { ...await response.json(), next_offset: 10000 } });
+    });
+    await page.route('**/api/v1/alarms/journal?**', (route) => route.fulfill({ status: 503, body: 'busy' }));
+    await page.reload();
+    await page.locator('[data-part=notes] td').first().waitFor();
+    const texts = await page.locator('#handover > .wrong').allTextContents();
+    const raised = await page.locator('[data-part=raised] > .wrong').count();
+    await page.unroute('**/api/v1/alarms?**');
+    await page.unroute('**/api/v1/alarms/journal?**');
+    await page.reload();
+    await page.locator('[data-part=raised] td').first().waitFor();
+    assert.equal(raised, 1);
+    assert.match(texts.join(), /^List shortened/);
+});
+
 test('on a phone, each row of the handover is a block of titled lines', options, async () => {
     const screen = page.viewportSize();
     await page.setViewportSize({ width: 390, height: 844 });

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The alarm bar at the top of the page, always visible, with the numbers of alarms. The alarm list is loaded when the user
 // first opens it.
-import { decimalsOf, numberText, timeOrDay, unitText, zoneClock } from '../../core/format.js';
+import { timeOrDay, unitText, valueText, zoneClock } from '../../core/format.js';
 import { say } from '../../core/words.js';
 import { byId, make, setText } from '../common/dom.js';
 
@@ -28,7 +28,7 @@ export function limitText(session, alarm, fresh) {
     if (value === null || limit === null)
         return held ?? '';
     const group = model.group(tag.group);
-    const textOf = (number) => `${numberText(number, decimalsOf(group, number))} ${unitText(tag.unit || group?.unit)}`;
+    const textOf = (number) => `${valueText(group, number)} ${unitText(tag.unit || group?.unit)}`;
     const reading = model.readings[tag.index], known = reading.quality === 'bad' ? say('novalue') : textOf(reading.value);
     const now = isPast ? '' : `, ${held ?? say('alarms.present', { now: fresh ? known : '–' })}`;
     return say('alarms.value', { value: textOf(value), now, limit: textOf(limit) });
@@ -102,6 +102,9 @@ export class AlarmBar {
 
 // Returns an instant as text in the plant's time zone, with its day if that is not today.
 export const timeOf = (session, us) => timeOrDay(zoneClock(session.model.plant.time_zone), us / 1000, session.clockUs() / 1000);
+
+// Returns today's date in the plant's time zone.
+export const todayOf = (session) => zoneClock(session.model.plant.time_zone)(session.clockUs() / 1000).date;
 
 // Returns the time of the server's last message.
 export const asOf = (session) => timeOf(session, session.clockUs(session.freshAt));

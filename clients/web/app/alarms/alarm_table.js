@@ -2,7 +2,7 @@
 // The table element shared by the alarm list and the alarm journal: sortable columns and common cells.
 import { nextSort, sortable, sortRows } from '../../core/alarm_table.js';
 import { isGone } from '../../core/alarms.js';
-import { ageText, decimalsOf, numberText, unitText, zoneClock } from '../../core/format.js';
+import { ageText, unitText, valueText, zoneClock } from '../../core/format.js';
 import { say } from '../../core/words.js';
 import { icon, make, makeSvg, setText } from '../common/dom.js';
 import { fillSelect } from '../common/choices.js';
@@ -65,7 +65,7 @@ export class AlarmTable {
 // Returns a function that formats a number in the unit and with the decimals of a tag.
 function textsOf(model, tag) {
     const group = model.group(tag.group);
-    const text = (value) => (value === null ? '' : numberText(value, decimalsOf(group, value)));
+    const text = (value) => (value === null ? '' : valueText(group, value));
     return { unit: unitText(tag.unit || group?.unit), text };
 }
 

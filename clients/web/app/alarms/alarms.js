@@ -9,7 +9,7 @@ import { say } from '../../core/words.js';
 import { byId, make, setText } from '../common/dom.js';
 import { fillSelect } from '../common/choices.js';
 import { saveFile } from '../common/save_file.js';
-import { asOf, heldSince } from './alarm_bar.js';
+import { asOf, heldSince, todayOf } from './alarm_bar.js';
 import { addEdge } from './panel_edge.js';
 import { actionButton, AlarmTable, momentButton, refreshCells, rowOf } from './alarm_table.js';
 
@@ -67,7 +67,7 @@ export class AlarmList {
 
     // Returns today's date, on which the texts of times in all rows depend.
     get today() {
-        return zoneClock(this.session.model.plant.time_zone)(this.session.clockUs() / 1000).date;
+        return todayOf(this.session);
     }
 
     get open() {

@@ -4,7 +4,7 @@ import { isIn, journalRow, tableCsv } from '../../core/alarm_table.js';
 import { journalSpan, readJournal } from '../../core/handover.js';
 import { fieldInstant, fieldText } from '../../core/instant.js';
 import { ask } from '../../core/history.js';
-import { zoneClock } from '../../core/format.js';
+import { dayTime, zoneClock } from '../../core/format.js';
 import { say } from '../../core/words.js';
 import { byId, make, setText } from '../common/dom.js';
 import { fillSelect } from '../common/choices.js';
@@ -146,9 +146,8 @@ export class Journal {
             this.rangeText);
         this.more.hidden = passing.length <= this.shown;
         setText(this.more, say('alarms.more', { count: passing.length - this.shown }));
-        const oldest = this.rows.at(-1), clock = zoneClock(this.zone);
-        const at = oldest && clock(oldest.us / 1000);
-        const count = this.cut ? say('journal.cut', { count: passing.length, all, time: `${at.day} ${at.time}` })
+        const time = this.cut && dayTime(zoneClock(this.zone), this.rows.at(-1).us / 1000);
+        const count = this.cut ? say('journal.cut', { count: passing.length, all, time })
             : say('journal.count', { count: passing.length });
         setText(this.note, [this.failed, (!this.failed || all > 0) && count].filter(Boolean).join(' · '));
         this.older.hidden = !this.cut;

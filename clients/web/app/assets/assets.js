@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The equipment list: areas, assets and their sensors with values. On narrow screens it is loaded when first opened. Pointer,
 // keyboard and search handling (rows.js) is loaded on first use.
-import { decimalsOf, numberText, qualityText, unitText } from '../../core/format.js';
+import { qualityText, unitText, valueText } from '../../core/format.js';
 import { Tree } from '../../core/asset_tree.js';
 import { say } from '../../core/words.js';
 import { byId, glyph, limitFlag, make, setText } from '../common/dom.js';
@@ -149,7 +149,7 @@ export class Assets {
         const { model, params } = this.session, value = element.lastChild;
         const { value: number, quality } = model.readings[tag.index], group = model.group(tag.group);
         const known = number !== null && quality !== 'bad';
-        const text = known ? numberText(number, decimalsOf(group, number)) : say('novalue');
+        const text = known ? valueText(group, number) : say('novalue');
         const unit = known ? ` ${unitText(tag.unit || group?.unit)}` : '';
         if (value.textContent !== text + unit)
             value.replaceChildren(text, make('i', {}, unit));

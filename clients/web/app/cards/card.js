@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The card of one sensor: its description, value, quality, loop check and age.
-import { ageText, decimalsOf, numberText, unitText } from '../../core/format.js';
+import { ageText, unitText, valueText } from '../../core/format.js';
 import { statusText } from '../../core/quality.js';
 import { say } from '../../core/words.js';
 import { linksOf } from '../assets/about.js';
@@ -46,7 +46,7 @@ export class Card {
         }
         const reading = model.readings[tag.index], group = model.group(tag.group);
         const known = reading.value !== null;
-        const number = known ? numberText(reading.value, decimalsOf(group, reading.value)) : say('card.novalue');
+        const number = known ? valueText(group, reading.value) : say('card.novalue');
         const unit = known ? ` ${unitText(tag.unit || group?.unit)}` : '';
         if (this.value.textContent !== number + unit)
             this.value.replaceChildren(number, make('i', {}, unit));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A sensor's value as predicted from its neighbours (leave-one-out) by the daemon: a line on the sensor's card, and a list of
 // the largest deviations.
-import { decimalsOf, numberText, unitText } from '../../core/format.js';
+import { unitText, valueText } from '../../core/format.js';
 import { ask } from '../../core/history.js';
 import { say } from '../../core/words.js';
 import { make } from '../common/dom.js';
@@ -16,7 +16,7 @@ const sensors = (query, token) => ask('api/v1/neighbours', query, token).then((a
 export function neighbourText(row, group) {
     if (!row || row.predicted === null)
         return null;
-    const number = (value) => numberText(value, decimalsOf(group, value)), unit = unitText(group.unit);
+    const number = (value) => valueText(group, value), unit = unitText(group.unit);
     const predicted = `${number(row.predicted)} ${unit}${row.deviation === null ? '' : ` ± ${number(row.deviation)}`}`;
     if (row.residual === null)
         return predicted;

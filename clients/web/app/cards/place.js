@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The card of a point on the plant's surface: its equipment, the value at the point (interpolated between sensors), the sensors
 // that contribute to the value, and the uncertainty.
-import { decimalsOf, numberText, unitText } from '../../core/format.js';
+import { numberText, unitText, valueText } from '../../core/format.js';
 import { askPick } from '../../core/requests.js';
 import { halves } from '../../core/split_view.js';
 import { say } from '../../core/words.js';
@@ -89,7 +89,7 @@ export class Place {
 
     number(value) {
         const { session } = this, all = halves(session.shown, 2), { params } = all[this.half] ?? all[0];
-        return numberText(value, decimalsOf(session.scaleOf(params), value));
+        return valueText(session.scaleOf(params), value);
     }
 
     build() {

@@ -2,7 +2,7 @@
 // Shows sensor coverage, which does not depend on readings: how large the field's error may be (uncertainty), and which hot spots no sensor
 // would show (blind spots). Also has rarely needed titles of the legend. Loaded when one of these is shown, and with the panel of picture
 // settings.
-import { shortNumberText, zoneClock } from '../../core/format.js';
+import { dayTime, shortNumberText, zoneClock } from '../../core/format.js';
 import { say } from '../../core/words.js';
 import { fillSegments, markSegment } from '../common/choices.js';
 import { byId, make, setText } from '../common/dom.js';
@@ -32,7 +32,7 @@ export class Coverage {
     since({ baseline }) {
         if (!baseline?.time_us)
             return null;
-        const { day, time } = zoneClock(this.session.model.plant.time_zone)(baseline.time_us / 1000), when = `${day} ${time}`;
+        const when = dayTime(zoneClock(this.session.model.plant.time_zone), baseline.time_us / 1000);
         return say('coverage.since', { when: baseline.name ? `${baseline.name}, ${when}` : when });
     }
 

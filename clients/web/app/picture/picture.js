@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The panel of picture settings: baseline (saved readings with which the present ones are compared), colour scale and range,
 // and light.
-import { zoneClock } from '../../core/format.js';
+import { dayTime, zoneClock } from '../../core/format.js';
 import { sunOf, sunText, towardsSun } from '../../core/sun.js';
 import { say, sayIfKnown, title } from '../../core/words.js';
 import { sensorsOf } from '../input/commands.js';
@@ -97,7 +97,6 @@ export class Picture {
     instantText(baseline) {
         if (!baseline?.time_us)
             return '–';
-        const { day, time } = zoneClock(this.session.model.plant.time_zone)(baseline.time_us / 1000);
-        return `${day} ${time}`;
+        return dayTime(zoneClock(this.session.model.plant.time_zone), baseline.time_us / 1000);
     }
 }

@@ -11,7 +11,7 @@ const choices = (kind, ...values) => values.map((value) => [value, say(`${kind}.
 export const SHOWS = choices('show', 'value', 'operator', 'distance', 'difference');
 export const LOOKS = choices('look', 'default', 'glossy', 'flat', 'materials');
 
-const decimalsOf = (step) => Math.max(0, Math.ceil(-Math.log10(step) - 1e-9));
+const stepDecimals = (step) => Math.max(0, Math.ceil(-Math.log10(step) - 1e-9));
 
 // Returns the colour band sets that the sensor group defines: boundaries of the bands by the set's name.
 export function bandsOf({ group }) {
@@ -65,7 +65,7 @@ export class Toolbar {
     isolines() {
         const { group, range, params } = this.session;
         const every = (step) => multiples(...range, step);
-        const text = (step) => say('lines.every', { step: `${numberText(step, decimalsOf(step))} ${unitText(group?.unit)}` });
+        const text = (step) => say('lines.every', { step: `${numberText(step, stepDecimals(step))} ${unitText(group?.unit)}` });
         const choices = [['null', say('lines.none')], ...rampChoices(...range).map((step) => [JSON.stringify(every(step)), text(step)])];
         const now = JSON.stringify(params.isolines ?? null);
         return choices.some(([value]) => value === now) ? choices : [...choices, [now, say('lines.chosen')]];
@@ -76,7 +76,7 @@ export class Toolbar {
         const steps = new Set(rampChoices(...range));
         if (params.ramp_interval > 0)
             steps.add(params.ramp_interval);
-        const text = (step) => `${numberText(step, decimalsOf(step))} ${unitText(group?.unit)}`;
+        const text = (step) => `${numberText(step, stepDecimals(step))} ${unitText(group?.unit)}`;
         const own = bandsOf(this.session);
         const bands = choices('ramp', 'group', 'limits').filter(([name]) => own[name].length > 0);
         if (params.breaks?.length > 0 && this.breaksName() === 'chosen')

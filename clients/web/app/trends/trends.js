@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Trends of up to eight tags: recorded values over a relative or absolute time range, with zoom and pan. Plot draws the curves,
 // two units to a chart; TrendTable shows numbers.
-import { decimalsOf, numberText, timeOrDay, unitText, zoneClock, zoneOf } from '../../core/format.js';
+import { timeOrDay, unitText, valueText, zoneClock, zoneOf } from '../../core/format.js';
 import { ask, BAD, gaps } from '../../core/history.js';
 import { fieldText } from '../../core/instant.js';
 import { travel } from '../../core/requests.js';
@@ -141,7 +141,7 @@ export class Trends {
     }
 
     numberText(tag, value) {
-        return numberText(value ?? null, decimalsOf(this.session.model.group(tag.group), value));
+        return valueText(this.session.model.group(tag.group), value);
     }
 
     setFocus(tag) {

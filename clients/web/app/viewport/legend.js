@@ -89,11 +89,10 @@ export class Legend {
     constructor({ session, element, paramsOf, half = 0, lying = phone }) {
         Object.assign(this, { session, element, paramsOf, half, lying });
         this.lying.addEventListener('change', () => this.show(true));
-        this.shown = '';
+        // key of the contents that the legend shows, and their model; a welcome replaces the model, with other limits, units or colours
+        Object.assign(this, { shown: '', drawnModel: null });
         this.long = 240; // length of the legend's colour bar in CSS pixels
         new ResizeObserver(() => this.fit()).observe(element);
-        // the plant may have other limits, units and colours than before; `params` follows
-        session.on('welcome', () => { this.shown = ''; });
         for (const name of ['params', 'shown', 'proofs'])
             session.on(name, () => this.show());
         onPixelRatio(() => this.show(true));
@@ -130,9 +129,9 @@ export class Legend {
             return;
         const range = this.session.rangeOf(params);
         const { show, colormap, ramp_interval, scale, breaks, isolines, look } = params, wanted = this.contents(params);
-        if (wanted === this.shown && !again)
+        if (wanted === this.shown && model === this.drawnModel && !again)
             return;
-        this.shown = wanted;
+        Object.assign(this, { shown: wanted, drawnModel: model });
         const map = model.colormap(colormap);
         const rule = { map, min: range[0], max: range[1], log: scale === 'log', interval: ramp_interval ?? 0, breaks };
         const isOperator = show === 'operator';

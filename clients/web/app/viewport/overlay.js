@@ -3,7 +3,7 @@
 import { ALARM_COLOURS, isGone } from '../../core/alarms.js';
 import { projector } from '../../core/camera.js';
 import { thinOut } from '../../core/declutter.js';
-import { changeText, decimalsOf, numberText, unitText } from '../../core/format.js';
+import { changeText, decimalsOf, numberText, unitText, valueText } from '../../core/format.js';
 import { halves } from '../../core/split_view.js';
 import { FIRST_FAR, leaderLine, MOST_BAD, placeLabels, RANK_RING } from '../../core/labels.js';
 import { say } from '../../core/words.js';
@@ -253,7 +253,7 @@ export class Overlay {
         } else if (reading.value === null || reading.quality === 'bad') {
             parts.push([say('novalue'), 400, INK_2]);
         } else {
-            parts.push([numberText(reading.value, decimalsOf(group, reading.value)), ...(this.fresh ? [650, INK] : [400, INK_2])]);
+            parts.push([valueText(group, reading.value), ...(this.fresh ? [650, INK] : [400, INK_2])]);
             parts.push([unitText(tag.unit || group.unit), 400, INK_2]);
         }
         if (alarm)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Controls a control room's video wall from a user's desk: sends the current view to a pane (an area) of the wall, makes the
 // pane keep a view until further notice, and points at a position in the plant.
-import { zoneClock } from '../../core/format.js';
+import { timeOrDay, zoneClock } from '../../core/format.js';
 import { ask } from '../../core/history.js';
 import { quantityText } from '../../core/model.js';
 import { textOf, viewOf } from '../../core/named_views.js';
@@ -93,9 +93,9 @@ export class Remote {
         const there = session.walls?.displays.some(({ wall, display }) => wall === chosen.wall && display === chosen.display);
         const texts = [say(there ? 'remote.there' : 'remote.gone')];
         if (order) {
-            const { time } = zoneClock(session.model.plant.time_zone)(order.time_us / 1000);
+            const time = timeOrDay(zoneClock(session.model.plant.time_zone), order.time_us / 1000, session.clockUs() / 1000, 5);
             const who = [order.desk, order.by].filter(Boolean).join(', ');
-            texts.push(say(order.held ? 'remote.held' : 'remote.sent', { title: order.title, who, time: time.slice(0, 5) }));
+            texts.push(say(order.held ? 'remote.held' : 'remote.sent', { title: order.title, who, time }));
         }
         setText(this.said, texts.join(' · '));
         byId('remote-back').disabled = !order;

@@ -3,7 +3,7 @@
 // markers.
 import { ALARM_COLOURS, isGone } from '../../core/alarms.js';
 import { RADIANS } from '../../core/camera.js';
-import { ageText, decimalsFor, decimalsOf, numberText, shortNumberText, unitText, zoneClock } from '../../core/format.js';
+import { ageText, decimalsFor, shortNumberText, unitText, valueText, zoneClock } from '../../core/format.js';
 import { behindText, simulatedText } from '../../core/health.js';
 import { colourOf, edges, LIMIT_BANDS, placeOf, scaleTicks, valueAt } from '../../core/legend.js';
 import { quantityText } from '../../core/model.js';
@@ -133,7 +133,9 @@ export function showLegend(board, session, state, warning, now) {
     const late = warning?.[2] === true ? warning[0] : behindText(session.latency, now);
     const note = late || simulatedText(session) || state.words, isGood = !late && ['live', 'simulated'].includes(state.kind);
     const key = JSON.stringify([title, data, note, params.colormap, params.ramp_interval, params.breaks, params.isolines, params.scale,
-        session.rangeOf(params), params.show, hasField, session.model.plant.configuration]);
+        session.rangeOf(params), params.show, hasField]);
+    if (board.model !== model) // a welcome has replaced the model: colours and units may differ
+        Object.assign(board, { model, key: null });
     return board.show(key, (c, width, height) => {
         paper(c, width, height);
         write(c, title, 24, 46, 560, { weight: 600 });
@@ -204,7 +206,7 @@ export function cardLines(session, picked, now) {
     const { model } = session, tag = picked.sensor ? model.tag(picked.sensor) : null, asset = model.asset(tag?.asset ?? picked.asset);
     const named = asset ? [asset.tag || asset.id, asset.description].filter(Boolean).join(', ') : '';
     if (!tag) {
-        const scale = session.scaleOf(session.params), number = (x) => numberText(x, decimalsOf(scale, x));
+        const scale = session.scaleOf(session.params), number = (x) => valueText(scale, x);
         const { value, unit, state, place, uncertain, nearest } = picked, found = say(`place.${place ?? state}`);
         const text = value === null ? null : `${number(value)} ${unitText(unit)}`;
         return [[named, 52, 600], text && [text, 84, 700], [uncertain ? say('place.uncertain', { state: found }) : found, 52, 400],
@@ -212,7 +214,7 @@ export function cardLines(session, picked, now) {
     }
     const reading = model.readings[tag.index], group = model.group(tag.group), alarm = model.alarms.gravest(tag.index);
     const value = reading.value === null ? say('card.novalue')
-        : `${numberText(reading.value, decimalsOf(group, reading.value))} ${unitText(tag.unit || group?.unit)}`;
+        : `${valueText(group, reading.value)} ${unitText(tag.unit || group?.unit)}`;
     return [[tag.name, 60, 700], tag.description && [tag.description, 52, 400], [value, 84, 700],
         [`${statusText(reading.quality, reading.qualityName)}, ${ageText(model.ageMs(tag.index, now))}`, 52, 400],
         alarm && [`${say(`card.${alarm.kind}`)}, ${say(`state.${alarm.state}`)}`, 52, 700, ALERT],
