@@ -326,11 +326,11 @@ test('a snapshot request has the parameters of the view', () => {
             group: 'g', range: [0, 50], isolines: [], hidden: [], ghost: ['A', 'B'], selected: null, split: { group: 'h', range: [1, 2] },
             sensors: { 'T-1': { strength: 2, decay: 3 } }, clip: { planes: [[1, 0, 0, -2]] }, light: [0, 0, 1],
         },
-        camera: { eye: [1, 2, 3], target: [0, 0, 0], up: [0, 0, 1], fov: 45 }, size: { width: 800, height: 600 }, time: { atUs: null },
+        camera: { eye: [1, 2, 3], target: [0, 0, 0], up: [0, 1, 0], fov: 45 }, size: { width: 800, height: 600 }, time: { atUs: null },
     };
     assert.deepEqual(snapshotQuery(view), {
         width: 800, height: 600, group: 'g', range: '0,50', ghost: 'A,B', split: 'group=h;range=1,2', sensors: 'T-1=2:3',
-        clip: '1,0,0,-2', light: '0,0,1', hidden: '', camera: '1,2,3,0,0,0,45',
+        clip: '1,0,0,-2', light: '0,0,1', hidden: '', camera: '1,2,3,0,0,0,45', up: '0,1,0',
     });
     const { camera, projection, height_m, at } = snapshotQuery({ ...view, camera: { ...view.camera, height_m: 7 }, time: { atUs: 1e15 } });
     assert.deepEqual([camera, projection, height_m, at], ['1,2,3,0,0,0', 'orthographic', 7, '2001-09-09T01:46:40.000Z']);

@@ -60,6 +60,7 @@ export function snapshotQuery({ carried, camera, size, time }) {
         query.split = Object.entries(carried.split).filter(isSaid).map(([name, value]) => `${name}=${text(name, value)}`).join(';');
     const parallel = camera.height_m !== undefined;
     query.camera = numbersText([...camera.eye, ...camera.target, ...(parallel ? [] : [camera.fov])]);
+    query.up = numbersText(camera.up);
     if (parallel)
         Object.assign(query, { projection: 'orthographic', height_m: camera.height_m });
     if (time.atUs !== null)
