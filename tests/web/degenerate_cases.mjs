@@ -234,6 +234,8 @@ add('format', 'timeOrDay', [1e12, 1.1e12], { ends: true, call: (...instants) => 
 add('format', 'zoneClock', ['Europe/Berlin', 1e12], { ends: true, call: (zone, ms) => format.zoneClock(zone)(ms) });
 add('instant', 'fieldText', [1e15, 'Europe/Berlin'], ENDS);
 add('query', 'numbersText', [[1, 2, 3]], ENDS);
+add('query', 'listText', ['range', [1, 2]], ENDS);
+add('query', 'instantText', [1e15], ENDS);
 add('query', 'clipText', [clip], ENDS);
 add('query', 'sensorsText', [{ A: { strength: 1, decay: 2 } }], ENDS);
 add('query', 'snapshotQuery', [shown], ENDS);
@@ -286,7 +288,8 @@ const OTHERS = ['address.addressOf', 'address.readAddress', 'format.unitText', '
     'history.ask', 'history.witnesses', 'history.raised', 'history.severityOf',
     'trend_range.readRange', 'trend_values.alarmSpans', 'app/chart_style.strokeAlong',
     'app/chart_style.setChartUnit', 'instant.fieldInstant',
-    'query.readNumbers', 'query.readSensors', 'sun.sunText', 'wall.readWall', 'wire.WireError', 'wire.decodeFrame', 'wire.isGivenUp',
+    'query.readInstant', 'query.readNumbers', 'query.readSensors',
+    'sun.sunText', 'wall.readWall', 'wire.WireError', 'wire.decodeFrame', 'wire.isGivenUp',
     'app/alarm_bar.AlarmBar', 'app/alarm_bar.asOf', 'app/alarm_bar.badge', 'app/drift.driftCurve', 'app/drift.driftOf',
     'app/drift.driftText',
     'app/toolbar.Toolbar', 'wire.isWhole', 'wire.decodeMessage', 'wire.decodeBase64'];

@@ -336,6 +336,19 @@ test('a snapshot request has the parameters of the view', () => {
     assert.deepEqual([camera, projection, height_m, at], ['1,2,3,0,0,0', 'orthographic', 7, '2001-09-09T01:46:40.000Z']);
 });
 
+test('addresses and snapshot requests keep small values and the microseconds of an instant', () => {
+    const params = { range: [0.00001, 0.00004], breaks: [0.00002], isolines: [0.000035], light: [0, 0.6, 0.8] };
+    const camera = { eye: [1, 2, 3], target: [0, 0, 0], up: [0, 0, 1], fov: 45 }, size = { width: 800, height: 600 };
+    for (const atUs of [1793491200123987, 1793491200123000, 1793491200000007]) {
+        const read = readAddress(writeAddress({ params, time: { atUs } }));
+        assert.deepEqual([read.params, read.time], [params, { atUs }]);
+        const { at, range, light } = snapshotQuery({ carried: { ...params, light: [0, 1 / 3, 2 / 3] }, camera, size, time: { atUs } });
+        assert.deepEqual([range, light], ['0.00001,0.00004', '0,0.3333,0.6667']);
+        assert.equal(readAddress(`#at=${at}`).time.atUs, atUs);
+    }
+    assert.equal(readAddress('#at=2026-11-01T01:00:00.123987654%2B01:00').time.atUs, Date.UTC(2026, 10, 1) * 1000 + 123987);
+});
+
 test('an invalid address counts as none', () => {
     const senseless = [
         '', '#', '#camera=1,2,3', '#camera=NaN,0,0,0,0,0,0,0,1,45', '#ramp=-3', '#ramp=x', '#look=psychedelic', '#%%%',

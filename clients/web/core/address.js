@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Writes the view to the fragment of the page's URL (after #) and reads it, so that a reload or a shared link shows the same view.
 import { valid } from './camera.js';
-import { clipText, numbersText, readNumbers, readSensors, sensorsText } from './query.js';
+import { clipText, instantText, listText, numbersText, readInstant, readNumbers, readSensors, sensorsText } from './query.js';
 import { withoutEngineers } from './session.js';
 
 const CHOICES = {
@@ -43,7 +43,7 @@ export function writeAddress({ camera, params: all = {}, tag = null, time = null
         put('ramp', params.ramp_interval);
     for (const name of Object.keys(LISTS)) {
         if (params[name]?.length > 0 && differs(name))
-            put(name, numbersText(params[name]));
+            put(name, listText(name, params[name]));
     }
     for (const [name, usual] of Object.entries(FACTORS)) {
         const value = params[PARAMS[name] ?? name];
@@ -66,7 +66,7 @@ export function writeAddress({ camera, params: all = {}, tag = null, time = null
     if (tag)
         put('tag', tag);
     if (time?.atUs)
-        put('at', new Date(time.atUs / 1000).toISOString());
+        put('at', instantText(time.atUs));
     if (named)
         put('named', named);
     if (camera)
@@ -138,7 +138,6 @@ export function readAddress(hash) {
         params.clip = clip;
     if (fields.get('asset'))
         params.selected = fields.get('asset');
-    const at = Date.parse(fields.get('at') ?? '');
-    const time = at > 0 ? { atUs: at * 1000 } : {};
+    const atUs = readInstant(fields.get('at') ?? ''), time = atUs > 0 ? { atUs } : {};
     return { camera: readCamera(fields.get('camera')), params, tag: fields.get('tag') || null, time };
 }

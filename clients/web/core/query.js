@@ -2,12 +2,27 @@
 // Writes and reads parameters as text for the page's URL and for snapshot queries, in the grammar of /snapshot.png (protocol/HTTP.md).
 
 const round = (x) => Number(x.toFixed(4)) + 0;
+// Writes coordinates in metres, or components of directions, with at most 4 decimals.
 export const numbersText = (list) => list.map(round).join(',');
+// Writes a parameter with a list of numbers. Values of a sensor group may be small, so they are not rounded.
+export const listText = (name, list) => (name === 'light' ? numbersText(list) : list.join(','));
 
 // Parses a comma-separated list of numbers; null if it is invalid or does not have `count` numbers. count null: any number.
 export function readNumbers(text, count = null) {
     const list = (text ?? '').split(',').map((part) => (part.trim() === '' ? NaN : Number(part)));
     return list.every(Number.isFinite) && (count === null || list.length === count) ? list : null;
+}
+
+// Writes an instant with its microseconds: rounded down to a millisecond, it would be before the alarm that was raised at this instant.
+export function instantText(us) {
+    const whole = Math.round(us), text = new Date(Math.floor(whole / 1000)).toISOString();
+    return whole % 1000 ? `${text.slice(0, -1)}${String(whole % 1000).padStart(3, '0')}Z` : text;
+}
+
+// Parses a date and time with up to 6 decimals of the second; NaN if it is invalid.
+export function readInstant(text) {
+    const [, begin = text, micros = '', zone = ''] = text.match(/^(.*\.\d{3})(\d{1,3})\d*(.*)$/) ?? [];
+    return Date.parse(begin + zone) * 1000 + Number(micros.padEnd(3, '0'));
 }
 
 // Writes the factors of single sensors, { tag: { strength, decay } }, as TAG=STRENGTH[:DECAY],...
@@ -38,7 +53,7 @@ const APART = ['split', 'clip', 'baseline']; // see snapshotQuery
 
 function text(name, value) {
     if (LISTS.includes(name))
-        return numbersText(value);
+        return listText(name, value);
     if (NAMES.includes(name))
         return value.join(',');
     return name === 'sensors' ? sensorsText(value) : String(value);
@@ -64,6 +79,6 @@ export function snapshotQuery({ carried, camera, size, time }) {
     if (parallel)
         Object.assign(query, { projection: 'orthographic', height_m: camera.height_m });
     if (time.atUs !== null)
-        query.at = new Date(time.atUs / 1000).toISOString();
+        query.at = instantText(time.atUs);
     return query;
 }
