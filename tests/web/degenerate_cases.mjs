@@ -204,7 +204,6 @@ add('limit_names', 'placeNames', [lines, plotBox, [10, 50, 300], [20, 60, 40], 1
 add('trend_range', 'zoomed', [[0, 100e6], 0.5, 25e6, 200e6], ENDS);
 add('trend_range', 'panned', [[0, 100e6], 0.5, 200e6], ENDS);
 add('trend_range', 'newSpanS', [5000], ENDS);
-add('history', 'ticks', [0, 600e6, 6, 3600e6]);
 add('list_window', 'stack', [[20, 30, 20]], { ends: true });
 add('list_window', 'rowAt', [[0, 20, 50, 70], 30]);
 add('list_window', 'rowsInSight', [[0, 20, 50, 70], 10, 30, 2], ENDS);
@@ -233,6 +232,7 @@ add('format', 'dayTime', [1e12], { ends: true, call: (ms) => format.dayTime(form
 add('format', 'timeOrDay', [1e12, 1.1e12], { ends: true, call: (...instants) => format.timeOrDay(format.zoneClock('UTC'), ...instants) });
 add('format', 'zoneClock', ['Europe/Berlin', 1e12], { ends: true, call: (zone, ms) => format.zoneClock(zone)(ms) });
 add('instant', 'fieldText', [1e15, 'Europe/Berlin'], ENDS);
+add('instant', 'ticks', [1e15, 1.0001e15, 6, 'Europe/Berlin', 60]);
 add('query', 'numbersText', [[1, 2, 3]], ENDS);
 add('query', 'listText', ['range', [1, 2]], ENDS);
 add('query', 'instantText', [1e15], ENDS);

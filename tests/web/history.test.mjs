@@ -6,9 +6,9 @@ import { test } from 'node:test';
 import { residuals, stretches } from '../../clients/web/app/cards/drift.js';
 import { readAddress, writeAddress } from '../../clients/web/core/address.js';
 import {
-    arrowS, ask, BAD, clustered, density, gaps, limitLines, line, lost, nextTo, raised, ticks, UNCERTAIN, witnesses,
+    arrowS, ask, BAD, clustered, density, gaps, limitLines, line, lost, nextTo, raised, UNCERTAIN, witnesses,
 } from '../../clients/web/core/history.js';
-import { fieldInstant, fieldText } from '../../clients/web/core/instant.js';
+import { fieldInstant, fieldText, ticks } from '../../clients/web/core/instant.js';
 import { LEAST_US, newSpanS, panned, readRange, zoomed } from '../../clients/web/core/trend_range.js';
 import { alarmSpans, bands, statistics, valueAt, withNewest } from '../../clients/web/core/trend_values.js';
 
@@ -162,9 +162,21 @@ test('alarms are marked when they were raised', () => {
 });
 
 test('time ticks are round in the plant’s time zone', () => {
-    assert.deepEqual(ticks(1e6, 3599e6, 6), [600e6, 1200e6, 1800e6, 2400e6, 3000e6]);
-    assert.ok(ticks(0, 30 * 86400e6, 6).length <= 6);
-    assert.equal(ticks(0, 86400e6, 2, 3600e6)[0] % 3600e6, 0);
+    assert.deepEqual(ticks(1e6, 3599e6, 6, 'UTC'), [600e6, 1200e6, 1800e6, 2400e6, 3000e6]);
+    assert.ok(ticks(0, 30 * 86400e6, 6, 'UTC').length <= 6);
+    const texts = (from, to, most, zone, ...least) => ticks(Date.parse(from) * 1000, Date.parse(to) * 1000, most, zone, ...least)
+        .map((us) => fieldText(us, zone).slice(5, 16));
+    assert.deepEqual(texts('2026-11-21T03:00Z', '2026-11-22T03:00Z', 4, 'Asia/Kolkata'),
+        ['11-21T16:00', '11-22T00:00', '11-22T08:00']);
+    const midnights = (zone, ...days) => assert.deepEqual(texts('2026-10-23T12:00Z', '2026-10-26T12:00Z', 9, zone, 86400),
+        days.map((day) => `10-${day}T00:00`), zone);
+    midnights('Asia/Seoul', 24, 25, 26);
+    midnights('America/Chicago', 24, 25, 26);
+    midnights('Europe/Berlin', 24, 25, 26); // the clocks are set back on 25 October
+    assert.deepEqual(texts('2026-10-01T00:00Z', '2026-10-31T00:00Z', 5, 'Europe/Berlin', 86400).map((text) => text.slice(5)),
+        Array(4).fill('T00:00'));
+    assert.deepEqual(texts('2026-03-28T23:00Z', '2026-03-29T03:00Z', 9, 'Europe/Berlin').slice(0, 6),
+        ['03-29T00:00', '03-29T00:30', '03-29T01:00', '03-29T01:30', '03-29T03:00', '03-29T03:30']);
 });
 
 test('history requests carry the token, and errors show the server’s words', async () => {

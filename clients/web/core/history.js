@@ -176,18 +176,3 @@ export function density(marks, fromUs, toUs, count) {
 
 // Returns how many seconds one press of an arrow key moves a time slider that covers spanS seconds; at most a minute.
 export const arrowS = (spanS) => Math.max(1, Math.min(60, Math.round(spanS / 900)));
-
-const MOST_TICKS = 1000;
-
-// Returns at most `most` round times between two instants, in microseconds, for the ticks of a time axis. Returns none if an instant is not
-// finite or the instants are centuries apart.
-export function ticks(fromUs, toUs, most, offsetUs = 0) {
-    const steps = [1, 5, 10, 30, 60, 300, 600, 1800, 3600, 7200, 14400, 28800, 43200, 86400, 172800, 604800].map((s) => s * 1e6);
-    const step = steps.find((one) => (toUs - fromUs) / one <= most) ?? steps.at(-1);
-    const out = [];
-    if (!((toUs - fromUs) / step <= MOST_TICKS && Math.abs(fromUs) + Math.abs(offsetUs) < Number.MAX_SAFE_INTEGER))
-        return out;
-    for (let us = Math.ceil((fromUs + offsetUs) / step) * step - offsetUs; us <= toUs; us += step)
-        out.push(us);
-    return out;
-}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Converts times to and from the text of a date field, in the plant's time zone.
+// Converts times to and from the text of a date field, and chooses the ticks of a time axis, in the plant's time zone.
 import { zoneClock } from './format.js';
 
 function offsetMs(clock, utcMs) {
@@ -25,4 +25,27 @@ export function fieldInstant(text, timeZone) {
     const wanted = new Date(asUtc).toISOString().slice(0, 19);
     const fits = offsets.map((offset) => asUtc - offset).filter((utcMs) => fieldText(utcMs * 1000, timeZone) === wanted);
     return (fits.length > 0 ? Math.min(...fits) : asUtc - offsets[0]) * 1000;
+}
+
+const MOST_TICKS = 1000;
+const STEPS_S = [1, 5, 10, 30, 60, 300, 600, 1800, 3600, 7200, 14400, 28800, 43200, 86400, 172800, 604800];
+
+// Returns at most about `most` times between two instants, in microseconds, for the ticks of a time axis. They are round in the time zone,
+// and at least leastS apart: with a day, they are midnights. Returns none if an instant is not finite or the instants are centuries apart.
+export function ticks(fromUs, toUs, most, timeZone, leastS = 1) {
+    const out = [], step = (STEPS_S.find((s) => s >= leastS && (toUs - fromUs) / (s * 1e6) <= most) ?? STEPS_S.at(-1)) * 1000;
+    if (!((toUs - fromUs) / (step * 1000) <= MOST_TICKS && Math.abs(fromUs) < Number.MAX_SAFE_INTEGER))
+        return out;
+    // steps in local time, because days with a change of the clocks are longer or shorter
+    const beginMs = Date.parse(`${fieldText(fromUs, timeZone)}Z`);
+    let offset = beginMs - Math.floor(fromUs / 1e6) * 1000;
+    for (let localMs = Math.floor(beginMs / step) * step; ; localMs += step) {
+        const text = new Date(localMs).toISOString().slice(0, 19), likelyUs = (localMs - offset) * 1000;
+        const us = fieldText(likelyUs, timeZone) === text ? likelyUs : fieldInstant(text, timeZone);
+        if (us > toUs)
+            return out;
+        offset = localMs - us / 1000;
+        if (us >= fromUs && us !== out.at(-1))
+            out.push(us);
+    }
 }

@@ -2,15 +2,16 @@
 // The time bar: a slider over the recorded history that marks gaps, lost sources and alarms (clickable), with playback, its
 // speed, a date field and a button that returns to the present.
 import { ageText, timeOrDay, zoneClock } from '../../core/format.js';
-import { arrowS, ask, clustered, density, lost, nextTo, raised, ticks, witnesses } from '../../core/history.js';
-import { fieldInstant, fieldText } from '../../core/instant.js';
+import { arrowS, ask, clustered, density, lost, nextTo, raised, witnesses } from '../../core/history.js';
+import { fieldInstant, fieldText, ticks } from '../../core/instant.js';
 import { travel } from '../../core/requests.js';
 import { say } from '../../core/words.js';
 import { onCrosshair, pointAtInstant } from '../common/crosshair.js';
 import { byId, makeSvg, setText } from '../common/dom.js';
 import { fillSelect } from '../common/choices.js';
 
-const SPANS = [[900, 'min', 15], [3600, 'h', 1], [28800, 'h', 8], [86400, 'h', 24], [604800, 'd', 7], [2592000, 'd', 30]];
+const DAY_S = 86400;
+const SPANS = [[900, 'min', 15], [3600, 'h', 1], [28800, 'h', 8], [DAY_S, 'h', 24], [604800, 'd', 7], [2592000, 'd', 30]];
 const SPEEDS = [1, 10, 60, 300, 600, 3600];
 // MARKS_MS: milliseconds after which the marks are requested again; MARKS_MOST: alarm journal rows per request, MARK_PAGES:
 // maximum number of such requests; HAND_MS: time after a drag in which the slider is not moved by the page; NOW_US: an instant
@@ -332,8 +333,9 @@ export class Timeline {
         const thumb = x(from + Number(this.slider.value) * 1e6); // redraws the slider's thumb, which the hatching has covered
         if (nodes.some((node) => node.classList.contains('lost') || node.classList.contains('unrecorded')))
             nodes.push(makeSvg('circle', { class: 'thumb', cx: thumb, cy: 20, r: 8 }));
-        for (const us of ticks(from, this.toUs, Math.max(2, width / 110))) {
-            const { day, time } = this.clock(us / 1000), text = this.spanUs > 2 * 86400e6 ? day : time.slice(0, 5);
+        const isOfDays = this.spanUs > 2 * DAY_S * 1e6, { time_zone: zone } = this.session.model.plant;
+        for (const us of ticks(from, this.toUs, Math.max(2, width / 110), zone, isOfDays ? DAY_S : 1)) {
+            const { day, time } = this.clock(us / 1000), text = isOfDays ? day : time.slice(0, 5);
             nodes.push(makeSvg('path', { class: 'tick', d: `M${x(us)} 26v5` }));
             if (x(us) > 30 && x(us) < width - 30)
                 nodes.push(makeSvg('text', { x: x(us), y: 42, 'text-anchor': 'middle' }, text));
