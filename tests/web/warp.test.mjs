@@ -13,6 +13,7 @@ import { Isolines } from '../../clients/web/app/viewport/isolines.js';
 import { projector } from '../../clients/web/core/camera.js';
 import { sight } from '../../clients/web/core/camera_moves.js';
 import { decodeGrid, fitPicture, readHeader } from '../../clients/web/core/depth_grid.js';
+import { Gestures } from '../../clients/web/core/gestures.js';
 import { along } from '../../clients/web/core/vector.js';
 import { depthAt, FAR, FLOATS, goneAfter, isNear, meshOf, moveBy, NEAR, warpMatrix } from '../../clients/web/core/warp_mesh.js';
 import { Layers, Raster } from '../../clients/web/core/warp_raster.js';
@@ -384,6 +385,31 @@ test('after a movement, the server\'s picture of the same camera replaces the wa
     assert.equal(steps.at(-1)[2], 0, 'the next movement ends with a fade of its own');
     warp.session.cameraSeq = 3;
     assert.deepEqual([warp.draw(2040), warp.isShown], [true, false], 'no fade while the camera moves');
+});
+
+test('a picture is loaded before the camera moves only while a pointer is pressed or a mouse has just moved over it', () => {
+    let now = 100000;
+    const { mock: calls } = mock.method(performance, 'now', () => now), loaded = [], gestures = new Gestures();
+    const session = { ...ahead().session, cameraSeq: 1 }, canvas = { style: {} };
+    const warp = Object.assign(ahead(session), { canvas, grids: [], held: null, painted: {}, modules: { there: () => ({ gestures }) },
+        load: () => loaded.push(now) });
+    session.picture.depth = {};
+    const draws = () => [warp.draw(), loaded.length];
+    try {
+        assert.deepEqual(draws(), [false, 0], 'a still view costs nothing');
+        assert.deepEqual([gestures.mouse(now), gestures.mouse(now)], [true, false], 'only the first event starts an animation frame');
+        assert.deepEqual(draws(), [false, 1]);
+        now += 4999;
+        assert.deepEqual(draws(), [false, 2]);
+        now += 1;
+        assert.deepEqual(draws(), [false, 2], 'the mouse has rested for 5 s');
+        gestures.down({ id: 1, x: 0, y: 0 });
+        assert.deepEqual(draws(), [false, 3]);
+        warp.isShown = true;
+        assert.deepEqual(draws(), [true, 4], 'also in the frame that ends a movement');
+    } finally {
+        calls.restore();
+    }
 });
 
 test('if a picture comes without depth, or its depth cannot be decoded, the page stops warping', () => {

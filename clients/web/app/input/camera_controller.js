@@ -62,6 +62,13 @@ export class CameraController {
         this[event.type](event);
     }
 
+    // A mouse has moved or turned its wheel over the picture: starts an animation frame, in which warp.js loads the picture before the
+    // camera first moves.
+    expectMove() {
+        if (this.gestures.mouse(performance.now()))
+            this.viewport.invalidate();
+    }
+
     place(event) {
         const box = this.viewport.element.getBoundingClientRect();
         return { id: event.pointerId, x: event.clientX - box.left, y: event.clientY - box.top, time: event.timeStamp };
@@ -74,7 +81,7 @@ export class CameraController {
         const place = this.place(event);
         if (!this.gestures.active)
             this.takeHold(place);
-        // starts an animation frame, in which warp.js uploads the picture to the GPU before the pointer first moves
+        // starts an animation frame, in which warp.js loads the picture before the pointer first moves
         this.viewport.invalidate();
         this.gestures.down({ ...place, kind: event.pointerType, button: event.button, shift: event.shiftKey, ctrl: event.ctrlKey });
     }
@@ -101,7 +108,10 @@ export class CameraController {
     pointermove(event) {
         const place = this.place(event);
         if (!this.gestures.active) {
-            this.handlers.point(isOnPicture(event) && event.pointerType !== 'touch' ? place : null);
+            const isMouse = isOnPicture(event) && event.pointerType !== 'touch';
+            if (isMouse)
+                this.expectMove();
+            this.handlers.point(isMouse ? place : null);
             return;
         }
         this.apply(this.gestures.move(place), event.timeStamp);
@@ -140,6 +150,7 @@ export class CameraController {
         if (!isOnPicture(event))
             return;
         this.land();
+        this.expectMove();
         const place = this.place(event), { x, y, time } = place, { anchor } = this;
         if (!anchor || time - anchor.time > ANCHOR_MS || Math.hypot(x - anchor.x, y - anchor.y) > ANCHOR_PX)
             this.takeHold(place);

@@ -171,7 +171,7 @@ export class Warp {
             this.source = { picture, camera: picture.ownCamera, parts: known.parts };
         try {
             if (!this.isWanted || !this.load())
-                return !this.fade(now) && (this.hide() || this.loadEarly());
+                return !this.fade(now) && this.rest();
             if (this.isShown && this.painted === this.source && same(camera, picture.camera))
                 return false;
             this.paint(camera, this.source, 0);
@@ -235,12 +235,13 @@ export class Warp {
         return true;
     }
 
-    // Loads the picture into the painter while a pointer is pressed, so that the pointer's first move is drawn sooner. Returns false,
-    // because the screen does not change.
-    loadEarly() {
-        if (this.source && this.modules.there('cameraController')?.gestures.active)
+    // Shows the unwarped picture. Loads it into the painter if the user is expected to move the camera, so that the first move is drawn
+    // sooner. Returns true if the screen changes.
+    rest() {
+        const changes = this.hide();
+        if (this.source && this.modules.there('cameraController')?.gestures.isAtHand(performance.now()))
             this.load();
-        return false;
+        return changes;
     }
 
     // Loads the newest picture and its mesh into the painter that draws warped pictures (GlPainter or CpuPainter). Returns
