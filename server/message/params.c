@@ -128,7 +128,7 @@ static bool parse_range(const json_t *o, struct params_change *out, struct messa
         message_refuse(error, "bad_field", "range", REFUSAL_RANGE);
     else if (!(fabs(out->range_min) <= NUMBER_MAX && fabs(out->range_max) <= NUMBER_MAX))
         message_refuse_with(error, "bad_field", "range", REFUSAL_BETWEEN, "low=%g\nhigh=%g", -NUMBER_MAX, NUMBER_MAX);
-    else if (!(out->range_max - out->range_min > RANGE_LEAST))
+    else if (!(out->range_max - out->range_min > RANGE_LEAST) || !plant_range_is_wide(out->range_min, out->range_max))
         message_refuse(error, "bad_field", "range", REFUSAL_RANGE);
     else
         return true;

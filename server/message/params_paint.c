@@ -118,8 +118,9 @@ static bool take_isolines(const struct params_change *change, struct view *view,
         message_refuse_with(error, "bad_field", "isolines", REFUSAL_LINES, "step=%g\ncount=%d", step, VIEW_LINES);
         return false;
     }
-    for (double n = ceil(view->range_min / step - 1e-9); step > 0 && n * step <= view->range_max + 1e-9 * step; n++)
-        color_scale->lines[color_scale->line_count++] = n * step;
+    double first = step > 0 ? ceil(view->range_min / step - 1e-9) : 0;
+    for (int i = 0; step > 0 && i < VIEW_LINES && (first + i) * step <= view->range_max + 1e-9 * step; i++)
+        color_scale->lines[color_scale->line_count++] = (first + i) * step;
     return true;
 }
 
@@ -134,7 +135,7 @@ bool params_apply_paint(const struct plant *plant, const struct params_change *c
         return false;
     if (change->given & GIVEN_SCALE)
         view->color_scale.log = change->color_scale.log;
-    if (!view->color_scale.log || view->range_min > 0)
+    if (!view->color_scale.log || view->range_min >= PLANT_LEAST_LOG)
         return true;
     message_refuse(error, "bad_field", "scale", REFUSAL_LOG);
     return false;

@@ -3,6 +3,7 @@
    from any thread. plantcastd, plantcast-prep and plantcast-sim all use it. */
 #ifndef PLANT_PLANT_H
 #define PLANT_PLANT_H
+#include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -117,6 +118,17 @@ struct plant_gp { /* parameters of the interpolation `gp` */
 };
 
 enum { PLANT_BREAKS = 16, PLANT_ISOLINES = 32 };
+/* least width of a colour scale's range, as a fraction of its larger end: values are stored as 32-bit floats, which differ by 6e-8 */
+#define PLANT_LEAST_RANGE 1e-6
+/* least lower end of a logarithmic colour scale, in the group's unit */
+#define PLANT_LEAST_LOG 1e-18
+
+/* Returns whether [min, max] can be the range of a colour scale. */
+static inline bool plant_range_is_wide(double min, double max)
+{
+    return max > min && max - min >= PLANT_LEAST_RANGE * fmax(fabs(min), fabs(max));
+}
+
 struct plant_group {
     char *id, *quantity, *unit;
     /* true (key `units: as-written`): values are taken to be in the group's unit, even if the tag list states another unit */

@@ -434,7 +434,10 @@ CASE(wrong_types_are_named)
     FOUND(f, { "plant.yaml", 3, 58, "breaks: expected a number, found 'x'" },
           { "plant.yaml", 3, 66, "breaks: expected a number greater than the previous one (0.5), found 0.3" },
           { "plant.yaml", 3, 82, "isolines: expected a list" },
-          { "plant.yaml", 3, 92, "scale: a logarithmic scale needs min above 0, found 0" });
+          { "plant.yaml", 3, 92, "scale: a logarithmic scale needs min of at least 1e-18, found 0" });
+    load_with(f, 3, "groups: [{ id: g, unit: K, min: 10000000, max: 10000000.000000002 }]");
+    FOUND(f, { "plant.yaml", 3, 33,
+               "min: expected at least 1e-06 times the larger of min and max between them, found 10000000 to 10000000.000000002" });
 }
 
 CASE(bad_choices_list_the_allowed)

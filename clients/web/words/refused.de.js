@@ -58,8 +58,8 @@ changed: {file} wurde inzwischen von anderen geändert
 kept: es sind schon {count} Vergleichsstände gespeichert; bitte erst einen löschen
 lines: ein Abstand von {step} ergibt mehr als {count} Linien
 numbers: höchstens {count} Zahlen, jede größer als die vorige
-log: eine logarithmische Skala braucht einen Bereich über 0
-range: der Bereich muss unter seinem Ende beginnen
+log: eine logarithmische Skala braucht einen Bereich über 0, ab 1e-18
+range: der Bereich muss unter seinem Ende beginnen, um mindestens ein Millionstel des größeren Endes
 between: erwartet wird eine Zahl von {low} bis {high}
 placeless: dieser Sensor hat für diese Messgröße keinen Ort
 narrow: das Bild ist zu schmal zum Teilen

@@ -340,8 +340,13 @@ static void read_group(struct yaml_reader *reader, yaml_node_t *node, struct pla
         group->quantity = mem_strdup(group->id);
     if (yaml_map_good(&map, "min") && yaml_map_good(&map, "max") && group->min >= group->max)
         yaml_error(reader, yaml_map_place(&map, "min"), "min: expected less than max, which is %.9g, found %.9g", group->max, group->min);
-    if (group->log && yaml_map_good(&map, "min") && !(group->min > 0))
-        yaml_error(reader, yaml_map_place(&map, "scale"), "scale: a logarithmic scale needs min above 0, found %.9g", group->min);
+    else if (yaml_map_good(&map, "min") && yaml_map_good(&map, "max") && !plant_range_is_wide(group->min, group->max))
+        yaml_error(reader, yaml_map_place(&map, "min"),
+                   "min: expected at least %g times the larger of min and max between them, found %.17g to %.17g", PLANT_LEAST_RANGE,
+                   group->min, group->max);
+    if (group->log && yaml_map_good(&map, "min") && !(group->min >= PLANT_LEAST_LOG))
+        yaml_error(reader, yaml_map_place(&map, "scale"), "scale: a logarithmic scale needs min of at least %g, found %.9g",
+                   PLANT_LEAST_LOG, group->min);
     plant_list_check_id(reader, &map, "group", plant->groups, plant->group_count, sizeof(*group), offsetof(struct plant_group, line));
 }
 

@@ -33,8 +33,9 @@ static void add_tick(struct ticks *ticks, const struct scale *scale, double valu
 static void round_ticks(struct ticks *ticks, const struct scale *scale, double most)
 {
     double step = nice_step(scale->max - scale->min, most);
-    for (double n = ceil(scale->min / step - 1e-9); n * step <= scale->max + 1e-9 * step; n++)
-        add_tick(ticks, scale, n * step);
+    double first = ceil(scale->min / step - 1e-9);
+    for (int i = 0; i < MAX_TICKS && (first + i) * step <= scale->max + 1e-9 * step; i++)
+        add_tick(ticks, scale, (first + i) * step);
 }
 
 /* Adds ticks of a logarithmic scale: at 1, 2 and 5 times each power of ten, or only at powers of ten if there are many. */
@@ -43,9 +44,9 @@ static void log_ticks(struct ticks *ticks, const struct scale *scale, double mos
     static const double leads[3] = { 1, 2, 5 };
     double decades = log10(scale->max / scale->min);
     int each = decades * 3 <= most ? 3 : 1;
-    for (double power = pow(10, floor(log10(scale->min))); power <= scale->max; power *= 10)
+    for (int power = (int)floor(log10(scale->min)), last = (int)floor(log10(scale->max)); power <= last; power++)
         for (int i = 0; i < each; i++)
-            add_tick(ticks, scale, power * leads[i]);
+            add_tick(ticks, scale, pow(10, power) * leads[i]);
 }
 
 static void line_ticks(struct ticks *ticks, const struct scale *scale, const double *lines, int count)
