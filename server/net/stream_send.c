@@ -84,7 +84,7 @@ static uint16_t flags_of(const struct stream *stream)
 {
     const struct packet *packet = packet_now(stream);
     bool last = is_last_part(stream), live = packet->frame->oldest_age_ns != INT64_MAX;
-    bool still = last && packet->frame->view.tier == TIER_REFINED;
+    bool still = last && packet->frame->view.tier == TIER_REFINED && !stream->sending->request.draft;
     int seen = (packet->frame->view.at_us ? WIRE_FLAG_PAST : 0) | (packet->is_signed ? WIRE_FLAG_SIGNED : 0) |
                (stream->depth ? WIRE_FLAG_DEPTH : 0);
     return (uint16_t)((packet->key ? WIRE_FLAG_KEY : 0) | (still ? WIRE_FLAG_STILL : 0) | (live ? 0 : WIRE_FLAG_NO_LIVE_DATA) |

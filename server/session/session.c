@@ -411,7 +411,8 @@ void session_on_message(struct session *session, const char *text, size_t count,
     struct message message;
     struct message_error error;
     count_message(session, now_ns);
-    if (!login_is_good(session->identity.login)) /* the client's token was refused, so the connection is being closed */
+    /* the connection is being closed, because the client's token was refused or has ended */
+    if (!login_is_good(session->identity.login) || session->close.code == 1008)
         return;
     bool good = parse(session, text, count, &message, &error);
     if (good)

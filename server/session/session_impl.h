@@ -153,10 +153,13 @@ void session_tell_time(struct session *session);
 /* Each function stores a request of the client: to follow a session, or to hand over the lead. The event loop carries it out. */
 void session_ask_follow(struct session *session, const struct message *message);
 void session_ask_lead(struct session *session, const struct message *message);
+/* Ends the display of the last view of a leader who has gone, and returns to the session's own view. */
+void session_come_to_own(struct session *session);
 
 /* --- session_plant.c -------------------------------------------------------------------------------------------------- */
 
-/* Describes the view as text, by names of tags and assets, for session_look_again(); the caller frees the text with mem_free. */
+/* Describes what the user chose for the view as text, by names of tags and assets, for session_look_again(); leaves out what is as in a new
+   view. The caller frees the text with mem_free. */
 char *session_carried_text(const struct session_context *context, const struct view *view);
 /* Restores a view after a plant reload: size and camera from `before`, everything else from the text `carried`, skipping what
    the new plant lacks. */

@@ -7,51 +7,19 @@
 #include "session/reply/reply.h"
 #include "session/session_impl.h"
 
-/* Describes the view by names, in the format of the server's `params` message. The extra object `start` lists the assets that
-   are not shown at first (hidden, ghosted) according to the plant file. */
-char *session_carried_text(const struct session_context *context, const struct view *view)
-{
-    char *said = reply_params_text(context, view, 0, false);
-    json_t *o = json_loads(said, 0, NULL), *start = json_object();
-    for (size_t i = 0; i < context->plant->asset_count; i++)
-        if (context->plant->assets[i].start != PLANT_START_SHOWN)
-            json_object_set_new(start, context->plant->assets[i].id, json_integer(context->plant->assets[i].start));
-    json_object_set_new(o, "start", start);
-    double low, high;
-    field_default_range(context->services->scene, &view->field, &low, &high);
-    /* leaves out a range that equals the group's default, because the new plant may have another default */
-    if (view->range_min == low && view->range_max == high)
-        json_object_del(o, "range");
-    char *dumped = json_dumps(o, JSON_COMPACT), *carried = mem_strdup(dumped);
-    free(dumped);
-    json_decref(o);
-    mem_free(said);
-    return carried;
-}
-
-char *session_carry(struct session *session)
-{
-    session_time_leave(session);
-    session_place_leave(session);
-    session_drop_ready(session);
-    session_forget_depth(session);
-    return session->hello ? session_carried_text(session->context, &session->view) : NULL;
-}
-
-/* Converts a text of session_carried_text() into the `params` message of a client that requests the same view. */
-static json_t *request_of(const char *carried)
+/* Converts the server's description of a view or of half a split view into the members of a client's `params` message. */
+static void make_request(json_t *o)
 {
     static const char *const said_only[] = { "type", "seq", "baselines", "unit" };
-    json_t *o = json_loads(carried, 0, NULL), *baseline = json_object_get(o, "baseline");
     for (size_t i = 0; i < sizeof(said_only) / sizeof(said_only[0]); i++)
         json_object_del(o, said_only[i]);
-    json_t *name = json_incref(json_object_get(baseline, "name"));
-    if (json_is_string(name))
-        json_object_set(o, "baseline", name);
-    else
+    json_t *baseline = json_object_get(o, "baseline"), *split = json_object_get(o, "split");
+    if (json_is_string(json_object_get(baseline, "name")))
+        json_object_set(o, "baseline", json_object_get(baseline, "name"));
+    else if (!json_is_string(baseline))
         json_object_del(o, "baseline");
-    json_decref(name);
-    return o;
+    if (json_is_object(split))
+        make_request(split);
 }
 
 static bool apply(struct session *session, const json_t *request)
@@ -61,6 +29,94 @@ static bool apply(struct session *session, const json_t *request)
     return params_parse(session->context->plant, request, &message.params, &error) &&
            split_parse(session->context->plant, request, &message.split, &error) &&
            session_apply_params(session, &message, &session->view, &error);
+}
+
+/* Returns the parameters, as members of a `params` message, of a new view in which a client has requested `request`; NULL if the request
+   is refused. */
+static json_t *described(const struct session_context *context, const struct view *size, const json_t *request)
+{
+    json_t *o = NULL;
+    struct session *other = session_create(context, 0, 0);
+    view_default(context->services->scene, size->width_px, size->height_px, &other->view);
+    if (apply(other, request)) {
+        char *text = reply_params_text(context, &other->view, 0, false);
+        o = json_loads(text, 0, NULL);
+        make_request(o);
+        mem_free(text);
+    }
+    session_destroy(&other);
+    return o;
+}
+
+/* Returns the members that select what a view or half a split view shows. The defaults of the other members depend on them. */
+static json_t *choice_of(const json_t *o)
+{
+    static const char *const keys[] = { "group", "show", "sensor", "baseline" };
+    json_t *choice = json_object();
+    for (size_t i = 0; i < sizeof(keys) / sizeof(keys[0]); i++)
+        if (json_object_get(o, keys[i]))
+            json_object_set(choice, keys[i], json_object_get(o, keys[i]));
+    return choice;
+}
+
+static void drop_equal(json_t *o, const json_t *defaults)
+{
+    static const char *const keys[] = { "interpolation", "distance",      "fill",  "strength", "decay",  "power",      "radius_m",
+                                        "reach_m",       "sensors",       "range", "colormap", "scale",  "breaks",     "isolines",
+                                        "look",          "ramp_interval", "light", "backdrop", "arrows", "environment" };
+    for (size_t i = 0; i < sizeof(keys) / sizeof(keys[0]); i++)
+        if (json_object_get(o, keys[i]) && json_equal(json_object_get(o, keys[i]), json_object_get(defaults, keys[i])))
+            json_object_del(o, keys[i]);
+}
+
+/* Leaves out the members that nobody chose, because a reloaded plant may have other defaults: those that a view with the same choice has
+   by itself. */
+static void drop_defaults(const struct session_context *context, const struct view *view, json_t *o)
+{
+    json_t *choice = choice_of(o), *defaults = described(context, view, choice), *split = json_object_get(o, "split");
+    drop_equal(o, defaults);
+    json_decref(defaults);
+    json_decref(choice);
+    if (!json_is_object(split))
+        return;
+    json_t *request = json_copy(o);
+    json_object_set_new(request, "split", choice_of(split));
+    defaults = described(context, view, request);
+    drop_equal(split, json_object_get(defaults, "split"));
+    json_decref(defaults);
+    json_decref(request);
+}
+
+/* Describes what the user chose for the view, by names, as members of a `params` message. The extra object `start` lists the assets that
+   are not shown at first (hidden, ghosted) according to the plant file. */
+char *session_carried_text(const struct session_context *context, const struct view *view)
+{
+    char *said = reply_params_text(context, view, 0, false);
+    json_t *o = json_loads(said, 0, NULL), *start = json_object();
+    make_request(o);
+    drop_defaults(context, view, o);
+    for (size_t i = 0; i < context->plant->asset_count; i++)
+        if (context->plant->assets[i].start != PLANT_START_SHOWN)
+            json_object_set_new(start, context->plant->assets[i].id, json_integer(context->plant->assets[i].start));
+    json_object_set_new(o, "start", start);
+    char *dumped = json_dumps(o, JSON_COMPACT), *carried = mem_strdup(dumped);
+    free(dumped);
+    json_decref(o);
+    mem_free(said);
+    return carried;
+}
+
+char *session_carry(struct session *session)
+{
+    if (session->following.left) {
+        session_come_to_own(session);
+        session->owed.following = true;
+    }
+    session_time_leave(session);
+    session_place_leave(session);
+    session_drop_ready(session);
+    session_forget_depth(session);
+    return session->hello ? session_carried_text(session->context, &session->view) : NULL;
 }
 
 /* Removes assets that no longer exist from the lists of hidden, isolated and ghosted assets. */
@@ -111,8 +167,9 @@ static void start_anew(const struct plant *plant, json_t *o)
 /* Applies the carried view as a whole; if that fails, applies each member separately and skips the invalid ones. */
 static void apply_carried(struct session *session, const char *carried)
 {
-    json_t *o = request_of(carried), *value;
+    json_t *o = json_loads(carried, 0, NULL), *value;
     const char *key;
+    make_request(o); /* texts that a daemon of an earlier version has written have the members of its own message */
     forget_gone(session->context->plant, o);
     start_anew(session->context->plant, o);
     if (o && !apply(session, o)) {
@@ -167,10 +224,6 @@ void session_take_plant(struct session *session, const char *carried)
         pacer_dropped(&session->delivery.pacer, session->delivery.pacer.previews > 0);
     if (!session->hello)
         return;
-    session->owed.following |= session->following.left != 0;
-    /* a follower whose leader has gone still showed the leader's last view; that view belongs to the old plant, so the follower
-       now returns to its own view */
-    session->following.left = 0;
     session_look_again(session, &before, carried);
     const bool had_pictures = !session->scope.tags;
     session_scope_begin(session);

@@ -171,6 +171,11 @@ CASE(a_revoked_token_ends_its_sessions_and_no_others)
     session_check_token(local, f->now_ns, f->now_ns);
     assert_int_equal(bob->close.code, 1008);
     assert_int_equal(alice->close.code | local->close.code, 0);
+    /* until the connection is closed, the session no longer acts on messages */
+    double before = bob->view.ramp_interval;
+    say(f, bob, "{\"type\":\"params\",\"seq\":1,\"ramp_interval\":7}");
+    say(f, alice, "{\"type\":\"params\",\"seq\":1,\"ramp_interval\":7}");
+    assert_true(bob->view.ramp_interval == before && before != 7 && alice->view.ramp_interval == 7);
     leave(f, &bob);
     leave(f, &alice);
     leave(f, &local);

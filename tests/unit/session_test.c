@@ -10,6 +10,7 @@
 #include "session/session_impl.h"
 #include "render/depth_grid.h"
 #include "tests/support/session_case.h"
+#include "tests/support/small_scene.h"
 #include "value/quality.h"
 
 #define CASE(name) TEST_ON(struct session_case *f, name, session_case_set_up, session_case_tear_down)
@@ -1168,6 +1169,49 @@ CASE(a_follower_is_shown_its_leaders_view)
     hear(f);
     assert_true(show(f).view.camera.eye_m[0] == 9); /* after following, the session shows its own view again, which it has kept */
     session_destroy(&leader);
+}
+
+/* Only what the user chose survives a reload; everything else is as the new plant file says, in both halves of a split view. */
+CASE(after_a_reload_the_new_plants_settings_apply)
+{
+    struct plant_group *groups = small_scene()->plant->groups;
+    const struct plant_group before[2] = { groups[0], groups[1] };
+    greet(f);
+    say(f, "{\"type\":\"params\",\"seq\":1,\"power\":3,\"range\":[30,60],\"colormap\":\"viridis\",\"split\":"
+           "{\"group\":\"pressure\",\"radius_m\":1}}");
+    char *carried = session_carry(f->session);
+    groups[0].reach_m = groups[1].reach_m = 2;
+    groups[0].power = groups[1].power = 4;
+    groups[0].max = groups[1].max = 100;
+    groups[1].radius_m = 7;
+    groups[1].fill = FILL_NONE;
+    session_take_plant(f->session, carried);
+    mem_free(carried);
+    struct view left, right;
+    view_half(&f->session->view, 0, &left);
+    view_half(&f->session->view, 1, &right);
+    groups[0] = before[0];
+    groups[1] = before[1];
+    assert_true(left.field.power == 3 && left.range_min == 30 && left.range_max == 60 && left.colormap == right.colormap);
+    assert_true(left.field.reach_m == 2 && left.field.group == 0);
+    assert_true(right.field.group == 1 && right.field.radius_m == 1 && right.colormap != 0);
+    assert_true(right.field.reach_m == 2 && right.field.power == 4 && right.field.fill == FILL_NONE && right.range_max == 100);
+}
+
+CASE(a_follower_without_leader_has_its_own_view_after_a_reload)
+{
+    struct session *leader = session_create(&f->context, 8, f->now_ns);
+    session_on_message(leader, HELLO, sizeof(HELLO) - 1, f->now_ns, f->now_ns);
+    greet(f);
+    say(f, "{\"type\":\"camera\",\"seq\":1,\"eye\":[9,4,5],\"target\":[0,0,1]}");
+    session_follow(f->session, leader, f->now_ns);
+    session_leader_gone(f->session, f->now_ns);
+    session_destroy(&leader);
+    assert_true(f->session->view.camera.eye_m[0] != 9);
+    char *carried = session_carry(f->session);
+    session_take_plant(f->session, carried);
+    mem_free(carried);
+    assert_true(f->session->view.camera.eye_m[0] == 9 && f->session->owed.following);
 }
 
 /* A follower's previews do not count for the size of pictures, but each one that is sent is no longer owed. Otherwise the first

@@ -15,8 +15,7 @@ void session_ask_follow(struct session *session, const struct message *message)
     session->following.asked = true;
 }
 
-/* Ends the display of the last view of a leader who has gone, and returns to the session's own view. */
-static void come_to_own(struct session *session)
+void session_come_to_own(struct session *session)
 {
     const struct view shown = session->view;
     session_time_leave(session);
@@ -45,7 +44,7 @@ void session_leader_gone(struct session *session, int64_t now_ns)
 void session_follow(struct session *session, struct session *leader, int64_t now_ns)
 {
     if (session->following.left)
-        come_to_own(session);
+        session_come_to_own(session);
     if (session->following.leader)
         session->following.leader->following.followers_changed = true;
     if (leader)
