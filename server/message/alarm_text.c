@@ -8,12 +8,15 @@
 #include <string.h>
 
 #include "alarm/devices.h"
+#include "base/clock.h"
 #include "base/mem.h"
 #include "base/text/json_text.h"
 #include "base/text/timestamp.h"
 #include "message/json_values.h"
 
 enum { ROWS_DEFAULT = 1000, MAX_ROWS = 10000 };
+
+static const int64_t MAX_AGE_NS = NS_PER_S / 10;
 
 static const char *mode_name(enum alarm_mode mode)
 {
@@ -51,7 +54,8 @@ char *alarms_text(struct alarm_text_cache *cache, struct alarm_service *alarm_se
                   uint64_t *number_out)
 {
     uint64_t since = *number_out;
-    if (cache && cache->text && cache->since == since && cache->number == alarm_service_number(alarm_service)) {
+    bool recent = cache && cache->text && llabs(now_utc_ns - cache->utc_ns) <= MAX_AGE_NS;
+    if (recent && cache->since == since && cache->number == alarm_service_number(alarm_service)) {
         *number_out = cache->number;
         return mem_strdup(cache->text);
     }
@@ -62,7 +66,7 @@ char *alarms_text(struct alarm_text_cache *cache, struct alarm_service *alarm_se
                            READING_DIGITS);
     if (cache) {
         alarm_text_cache_finish(cache);
-        *cache = (struct alarm_text_cache){ mem_strdup(text), since, *number_out };
+        *cache = (struct alarm_text_cache){ mem_strdup(text), since, *number_out, now_utc_ns };
     }
     return text;
 }

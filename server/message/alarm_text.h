@@ -12,10 +12,12 @@
 struct alarm_text_cache {
     char *text;
     uint64_t since, number;
+    int64_t utc_ns; /* time at which the text was built */
 };
 void alarm_text_cache_finish(struct alarm_text_cache *cache);
 /* Returns the message `alarms` with the alarms that changed after change number *number; *number 0: all alarms that are not
-   normal. Sets *number to the newest change number. cache NULL: the text is not cached. */
+   normal. Sets *number to the newest change number. A cached text and its member `time_us` are at most 0.1 s old. cache NULL: the
+   text is not cached. */
 char *alarms_text(struct alarm_text_cache *cache, struct alarm_service *alarm_service, const struct plant *plant, int64_t now_utc_ns,
                   uint64_t *number);
 

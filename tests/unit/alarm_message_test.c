@@ -95,6 +95,9 @@ CASE(sessions_hear_what_changed)
     /* a second session requests the same alarms and must get the text that was written for the first one */
     parse(alarms_text(&said, s->alarm_service, s->plant, 5000, &other));
     assert_int_equal(number, other);
+    other = 0;
+    json_t *later = parse(alarms_text(&said, s->alarm_service, s->plant, NS_PER_S, &other));
+    assert_int_equal(json_integer_value(json_object_get(later, "time_us")), 1000000);
     give(s, 0, 85, QUALITY_GOOD);
     json_t *changed = parse(alarms_text(&said, s->alarm_service, s->plant, 6000, &number));
     assert_true(json_is_false(json_object_get(changed, "all")));
