@@ -133,7 +133,11 @@ static void record(const struct reload *reload, bool good, const json_t *object)
 {
     const char *configuration = json_string_value(json_object_get(object, "configuration"));
     const char *error = json_string_value(json_array_get(json_object_get(object, "errors"), 0));
-    char *what = mem_printf("%sconfiguration %s is active", reload->saving ? "tag list saved: " : "", configuration);
+    char *what = mem_printf("%sconfiguration %s is active",
+                            !reload->saving ? ""
+                            : good          ? "tag list saved: "
+                                            : "tag list not saved: ",
+                            configuration);
     audit_say(reload->context->audit,
               &(struct audit_entry){
                   .event = "reload", .result = good ? "done" : "failed", .who = reload->by, .what = what, .why = error });

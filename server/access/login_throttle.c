@@ -8,13 +8,13 @@
 #include "base/mem.h"
 
 static const int64_t WINDOW_NS = 60 * NS_PER_S, WAIT_NS = LOGIN_WAIT_S * NS_PER_S, LOG_INTERVAL_NS = 600 * NS_PER_S;
-enum { MAX_KNOWN_TOKENS = 8 };
+enum { MAX_KNOWN_TOKENS = 256 };
 
 /* token that was accepted earlier from the same client address; it is checked even while the address is throttled, so that
    other users of the address cannot lock its holder out */
 struct known_token {
     uint8_t hash[TOKEN_HASH_BYTES];
-    int64_t said_ns;
+    int64_t said_ns, used_ns; /* said_ns: time at which the login was last reported as new (LOGIN_GOOD_NEW) */
 };
 
 struct throttle_entry {
@@ -23,8 +23,8 @@ struct throttle_entry {
     int64_t failed_ns[LOGIN_FAILURES]; /* ring buffer: times of the last wrong tokens from this address */
     int64_t failures;                  /* wrong tokens of this address in total; modulo LOGIN_FAILURES, the next index in failed_ns */
     int64_t slowed_until_ns, next_try_ns;
-    struct known_token known[MAX_KNOWN_TOKENS]; /* ring buffer: the last tokens accepted from this address */
-    int known_count;
+    struct known_token *known; /* the MAX_KNOWN_TOKENS tokens last accepted from this address */
+    size_t known_count, known_capacity;
 };
 
 struct login_throttle {
@@ -42,6 +42,8 @@ void login_throttle_destroy(struct login_throttle **logins_ptr)
     struct login_throttle *throttle = *logins_ptr;
     if (!throttle)
         return;
+    for (size_t i = 0; i < throttle->count; i++)
+        mem_free(throttle->entries[i].known);
     mem_free(throttle->entries);
     mem_free(throttle);
     *logins_ptr = NULL;
@@ -68,6 +70,7 @@ static struct throttle_entry *find_or_make(struct login_throttle *throttle, cons
         for (size_t i = 1; i < throttle->count; i++)
             if (throttle->entries[i].heard_ns < entry->heard_ns)
                 entry = &throttle->entries[i];
+        mem_free(entry->known);
     }
     *entry = (struct throttle_entry){ .failures = 0 };
     memcpy(entry->address, address, sizeof(entry->address));
@@ -76,23 +79,38 @@ static struct throttle_entry *find_or_make(struct login_throttle *throttle, cons
 
 static struct known_token *find_known(struct throttle_entry *entry, const uint8_t *hash)
 {
-    int count = entry->known_count < MAX_KNOWN_TOKENS ? entry->known_count : MAX_KNOWN_TOKENS;
-    for (int i = 0; i < count; i++)
+    for (size_t i = 0; i < entry->known_count; i++)
         if (!memcmp(entry->known[i].hash, hash, TOKEN_HASH_BYTES))
             return &entry->known[i];
     return NULL;
 }
 
+/* Returns a place for a new token; if there are MAX_KNOWN_TOKENS, that of the token which was not used for the longest time. */
+static struct known_token *known_place(struct throttle_entry *entry)
+{
+    if (entry->known_count < MAX_KNOWN_TOKENS) {
+        mem_grow(&entry->known, &entry->known_capacity, entry->known_count + 1, sizeof(*entry->known));
+        return &entry->known[entry->known_count++];
+    }
+    struct known_token *oldest = entry->known;
+    for (size_t i = 1; i < entry->known_count; i++)
+        if (entry->known[i].used_ns < oldest->used_ns)
+            oldest = &entry->known[i];
+    return oldest;
+}
+
 static enum login let_in(struct throttle_entry *entry, const uint8_t *hash, int64_t now_ns)
 {
     struct known_token *known = find_known(entry, hash);
+    if (known)
+        known->used_ns = now_ns;
     if (known && now_ns - known->said_ns < LOG_INTERVAL_NS)
         return LOGIN_GOOD;
     if (!known) {
-        known = &entry->known[entry->known_count++ % MAX_KNOWN_TOKENS];
+        known = known_place(entry);
         memcpy(known->hash, hash, TOKEN_HASH_BYTES);
     }
-    known->said_ns = now_ns;
+    known->said_ns = known->used_ns = now_ns;
     return LOGIN_GOOD_NEW;
 }
 

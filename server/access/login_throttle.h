@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Login throttle: counts wrong tokens and failed sign-ins per client address. After ten failures within a minute, only one
-   token every five seconds is checked from that address, until a minute passes without a failure. A token that was accepted
-   from the address before is never delayed. At most 1024 addresses are remembered; the least recently used is evicted first. No
-   input or output; the caller passes the time. Call only in the event loop. */
+   token every five seconds is checked from that address, until a minute passes without a failure. The 256 tokens
+   last accepted from the address are never delayed. At most 1024 addresses are remembered; the least recently used is evicted
+   first. No input or output; the caller passes the time. Call only in the event loop. */
 #ifndef ACCESS_LOGIN_THROTTLE_H
 #define ACCESS_LOGIN_THROTTLE_H
 #include <stdbool.h>

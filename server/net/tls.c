@@ -23,7 +23,7 @@ struct tls {
     char *cert_path, *key_path;
     struct file_watch cert_watch, key_watch;
     SSL_CTX *checked; /* newest certificate that passed the checks; NULL: none yet */
-    SSL_CTX *served;  /* OpenSSL context that libwebsockets serves the certificate with */
+    bool served;      /* true: libwebsockets serves `checked` */
     time_t warned_s;  /* time when the last warning about the certificate's expiry was logged, in seconds of UTC; 0: none yet */
 };
 
@@ -176,20 +176,30 @@ static void publish(const struct tls *tls)
     mem_free(path);
 }
 
+/* Gives a new connection the newest certificate. Certificates loaded into the connection's own context would not do: OpenSSL keeps one
+   for each type of key there, so that a certificate with another type of key would not replace the old one. */
+static int choose_certificate(SSL *connection, void *arg)
+{
+    const struct tls *tls = arg;
+    STACK_OF(X509) *chain = NULL;
+    SSL_CTX_get0_chain_certs(tls->checked, &chain);
+    SSL_certs_clear(connection);
+    return SSL_use_cert_and_key(connection, SSL_CTX_get0_certificate(tls->checked), SSL_CTX_get0_privatekey(tls->checked), chain, 1);
+}
+
 void tls_serve(struct tls *tls, SSL_CTX *context)
 {
     publish(tls);
+    SSL_CTX_set_cert_cb(context, choose_certificate, tls);
     SSL_CTX_set_min_proto_version(context, TLS1_2_VERSION);
     /* allows for TLS 1.2 only ciphers with forward secrecy and authenticated encryption, so no CBC ciphers; TLS 1.3 needs no
        list, because all its ciphers are secure */
     SSL_CTX_set_cipher_list(context, "ECDHE+AESGCM:ECDHE+CHACHA20");
-    tls->served = context;
+    tls->served = true;
 }
 
 void tls_look(struct tls *tls)
 {
-    char text[200];
-    const char *at;
     time_t now_s = time(NULL);
     if (is_time_to_warn(tls, now_s))
         warn_of_end(tls, now_s);
@@ -197,10 +207,7 @@ void tls_look(struct tls *tls)
     if ((!cert && !key) || !check(tls) || !tls->served)
         return;
     publish(tls);
-    if (load(tls->served, tls, &at))
-        log_info(tls->log, "TLS: %s: serving the new certificate", tls->cert_path);
-    else
-        log_err(tls->log, "TLS: %s: %s", at, why(text));
+    log_info(tls->log, "TLS: %s: serving the new certificate", tls->cert_path);
 }
 
 bool tls_is_called(const struct tls *tls, const char *name)

@@ -465,9 +465,13 @@ test('TLS: pictures come over wss, old TLS versions are refused, and a new certi
         copyFileSync(path(`second.${end}`), path(`served.${end}`));
     await plant.daemon.line(/serving the new certificate/);
     assert.equal((await subject())[0], 'other.example');
+    makeCertificate(plant.folder, 'third', ['third.example', 'localhost', '127.0.0.1'], ['rsa:2048']);
+    for (const end of ['pem', 'key'])
+        copyFileSync(path(`third.${end}`), path(`served.${end}`));
+    await until('a certificate with another type of key', async () => (await subject())[0] === 'third.example');
     copyFileSync(plant.file, path('served.pem'));
     await plant.daemon.line(/error TLS: /);
-    assert.equal((await subject())[0], 'other.example');
+    assert.equal((await subject())[0], 'third.example');
 });
 
 // Starts nginx with deploy/proxy/nginx.conf; only ports and files differ.

@@ -25,8 +25,9 @@ const path = (name) => join(plant.folder, name);
 const lines = () => readFileSync(trail, 'utf8').split('\n').slice(0, -1).map((line) => JSON.parse(line));
 const verify = (...args) => runProgram('plantcast', ['audit', 'verify', trail, ...args]);
 const bearer = (token) => `Authorization: Bearer ${token}\r\n`;
-const ask = (url, token, { method = 'GET', localAddress } = {}) =>
-    http(plant.port, `${method} ${url} HTTP/1.1\r\nHost: localhost\r\n${token ? bearer(token) : ''}\r\n`, { localAddress });
+const ask = (url, token, { method = 'GET', origin, localAddress } = {}) =>
+    http(plant.port, `${method} ${url} HTTP/1.1\r\nHost: localhost\r\n${token ? bearer(token) : ''}${
+        origin ? `Origin: ${origin}\r\n` : ''}\r\n`, { localAddress });
 async function found(what, where) {
     return await until(`${what} in the trail`, () => lines().find(where), 90, () => readFileSync(trail, 'utf8'));
 }
@@ -141,6 +142,10 @@ test('the audit trail records each action with user, address, object and result'
     viewer.close();
     assert.equal((await ask('/api/v1/reload', tokens.operator, { method: 'POST' })).status, 403);
     await found('the refused reload', (line) => line.event === 'access' && line.who === 'operator-1' && line.what === '/api/v1/reload');
+    assert.equal((await ask('/api/v1/pick?x=1&y=1&strength=2', tokens.viewer)).status, 403);
+    await found('the refused pick', (line) => line.event === 'access' && line.who === 'viewer-1' && line.what === '/api/v1/pick');
+    assert.equal((await ask('/api/v1/reload', tokens.engineer, { method: 'POST', origin: 'https://elsewhere.example' })).status, 403);
+    await found('the page of another site', (line) => line.what === '/api/v1/reload' && /another site/.test(line.why));
     const reload = await ask('/api/v1/reload', tokens.engineer, { method: 'POST' });
     assert.equal(JSON.parse(reload.body).by, 'engineer-1');
     await found('the reload', (line) => line.event === 'reload' && line.result === 'done' && line.who === 'engineer-1');
@@ -207,7 +212,8 @@ test('each file and each command of an import is recorded, with its user and its
         await idle();
     }
     await post('/run', engineer, undefined, { Origin: 'http://elsewhere.example' });
-    await found('the last', (line) => line.result === 'refused' && line.why === 'the request comes from a page of another site');
+    const foreign = 'the request comes from a page of another site';
+    await found('the last', (line) => line.event === 'import' && line.result === 'refused' && line.why === foreign);
     const want = ['access refused operator-1 /api/v1/import/run: the request needs the role engineer',
         'import failed engineer-1 /api/v1/import/upload: this file name is not allowed.*',
         'import done engineer-1 /api/v1/import/upload x.glb',

@@ -62,6 +62,26 @@ CASE(who_was_let_in_before_is_not_held_up)
     assert_int_equal(login_throttle_judge(throttle, THERE, DESK, 2 * S), LOGIN_GOOD_NEW);
 }
 
+/* Many token holders share one address, for example behind a proxy or NAT. */
+CASE(many_holders_of_one_address_are_not_held_up)
+{
+    uint8_t hash[TOKEN_HASH_BYTES] = { 0 };
+    for (int i = 0; i < 300; i++) {
+        hash[1] = (uint8_t)i;
+        hash[2] = (uint8_t)(1 + i / 256);
+        assert_int_equal(login_throttle_judge(throttle, HERE, hash, i), LOGIN_GOOD_NEW);
+        assert_int_equal(login_throttle_judge(throttle, HERE, WALL, S + i), i == 0 ? LOGIN_GOOD_NEW : LOGIN_GOOD);
+    }
+    for (int i = 0; i < 12; i++)
+        login_throttle_judge(throttle, HERE, NULL, 2 * S);
+    for (int i = 0; i < 300; i++) {
+        hash[1] = (uint8_t)i;
+        hash[2] = (uint8_t)(1 + i / 256);
+        assert_int_equal(login_throttle_judge(throttle, HERE, hash, 3 * S), i < 45 ? LOGIN_HELD : LOGIN_GOOD);
+    }
+    assert_int_equal(login_throttle_judge(throttle, HERE, WALL, 3 * S), LOGIN_GOOD); /* it was used last */
+}
+
 CASE(a_login_is_news_every_ten_minutes)
 {
     assert_int_equal(login_throttle_judge(throttle, HERE, WALL, 0), LOGIN_GOOD_NEW);

@@ -141,7 +141,6 @@ static const struct {
     { "/api/v1/import/report", api_import_report, ROLE_ENGINEER, 0 },
     { "/api/v1/import/matches", api_import_matches, ROLE_ENGINEER, 0 },
 };
-static const char RELOAD_PATH[] = "/api/v1/reload", LOGOUT_PATH[] = "/logout"; /* paths of POST requests */
 
 static int refuse(struct http_exchange *request, const struct http_refusal *refusal)
 {
@@ -167,7 +166,6 @@ static const struct http_refusal NEED_TOKEN = { HTTP_STATUS_UNAUTHORIZED, .code 
 static const struct http_refusal NOT_FOR_YOU = { HTTP_STATUS_FORBIDDEN, .code = REFUSAL_PICTURES_ONLY };
 static const struct http_refusal NOT_IN_VIEWS = { HTTP_STATUS_FORBIDDEN, .code = REFUSAL_VIEWS_ONLY };
 static const struct http_refusal NOT_ON_DISPLAY = { HTTP_STATUS_FORBIDDEN, .code = REFUSAL_DISPLAY_ONLY };
-static const struct http_refusal FOREIGN = { HTTP_STATUS_FORBIDDEN, .code = REFUSAL_FOREIGN };
 
 /* Answers a user who lacks the role engineer: 401 without a token, 403 with one. Returns the result for the libwebsockets callback. */
 static int refuse_others(struct http_exchange *request, enum role role)
@@ -192,7 +190,7 @@ static int serve_route(struct server_context *server, struct http_exchange *requ
         return engineer ? refuse_others(request, role) : refuse(request, role == ROLE_NOBODY ? &NEED_TOKEN : &NOT_FOR_YOU);
     }
     if (routes[i].least > ROLE_NOBODY && is_foreign_page(request->wsi))
-        return refuse(request, &FOREIGN);
+        return request_refuse_foreign(server, request, routes[i].path);
     return routes[i].serve(server, request);
 }
 
@@ -205,7 +203,7 @@ static int serve_post(struct server_context *server, struct http_exchange *reque
         return refuse_others(request, role);
     }
     if (is_foreign_page(request->wsi))
-        return refuse(request, &FOREIGN);
+        return request_refuse_foreign(server, request, path);
     if (!strcmp(path, RELOAD_PATH))
         return ask_reload(server, request);
     return import_post(server, request, path);

@@ -63,6 +63,9 @@ struct args { /* decoded arguments of a query */
 };
 
 #define HTTP_TEXT "text/plain; charset=utf-8"
+/* paths of POST requests */
+#define RELOAD_PATH "/api/v1/reload"
+#define LOGOUT_PATH "/logout"
 
 /* Functions that return int return the result for the libwebsockets callback: 0, or -1 to close the connection. */
 
@@ -82,6 +85,8 @@ int request_answer_later(struct http_exchange *request, const char *why);
 /* Answers with a refusal without arguments; status 503 also gets Retry-After. */
 int request_refuse(struct http_exchange *request, int status, enum refusal_code code);
 int request_refuse_for(struct http_exchange *request, int status, const struct refusal *refusal);
+/* Refuses a request from a page of another site, and records that in the audit trail. path: path of the request. */
+int request_refuse_foreign(struct server_context *server, struct http_exchange *request, const char *path);
 /* Answers that history cannot be read: with 500; on a renderer, which reads history from its core, with 503 and Retry-After. */
 int request_answer_unreadable(const struct server_context *server, struct http_exchange *request);
 /* Answers with a JSON text; takes ownership of text (mem_free). */

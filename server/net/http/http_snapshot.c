@@ -138,6 +138,14 @@ static int draw_picture(struct server_context *server, struct http_exchange *req
     return 0;
 }
 
+/* Answers an invalid query. Records in the audit trail if the user's role does not permit it. */
+static int refuse_query(struct server_context *server, struct http_exchange *request, const char *path, const struct message_error *error)
+{
+    if (!strcmp(error->code, "not_allowed"))
+        connection_record(server, request->wsi, "access", "refused", path, error->text);
+    return request_answer_error(request, error);
+}
+
 int ask_snapshot(struct server_context *server, struct http_exchange *request)
 {
     struct frame_request frame_request = { .codec = WIRE_CODEC_PNG, .quality = LOSSLESS, .urgency = URGENCY_SNAPSHOT, .always = true };
@@ -151,9 +159,7 @@ int ask_snapshot(struct server_context *server, struct http_exchange *request)
         result = draw_picture(server, request, &frame_request, named ? (const char *const *)address.args : args.list,
                               named ? address.count : args.count);
     } else {
-        if (!strcmp(error.code, "not_allowed"))
-            connection_record(server, request->wsi, "access", "refused", "/snapshot.png", error.text);
-        result = request_answer_error(request, &error);
+        result = refuse_query(server, request, "/snapshot.png", &error);
     }
     view_address_finish(&address);
     return result;
@@ -244,7 +250,7 @@ int ask_pick(struct server_context *server, struct http_exchange *request)
     bool good = read_query(server, request->wsi, &args, &address, &query.view, place, &error);
     view_address_finish(&address);
     if (!good)
-        return request_answer_error(request, &error);
+        return refuse_query(server, request, "/api/v1/pick", &error);
     if (!may_ask(server, request, &query.view, &result))
         return result;
     struct asked *asked = await_picture(server, request);
