@@ -16,12 +16,19 @@ enum { NUMBER_BYTES = 64 };
 
 /* --- text ------------------------------------------------------------------------------------------------------------------- */
 
+static bool boolean_of(const char *text, bool *out)
+{
+    *out = !strcasecmp(text, "true");
+    return *out || !strcasecmp(text, "false");
+}
+
 static bool number_of(const char *text, double *out)
 {
-    bool is_true = !strcasecmp(text, "true"), is_false = !strcasecmp(text, "false");
-    if (is_true || is_false)
-        *out = is_true;
-    return is_true || is_false || number_parse(text, out) == NUMBER_GOOD;
+    bool boolean;
+    if (!boolean_of(text, &boolean))
+        return number_parse(text, out) == NUMBER_GOOD;
+    *out = boolean;
+    return true;
 }
 
 bool mqtt_number_read(const void *bytes, size_t count, double *out)
@@ -88,8 +95,8 @@ static bool read_time(const json_t *json, int64_t *utc_ns)
     return !json_is_boolean(json) && read_number(json, &number) && read_epoch(number, utc_ns);
 }
 
-/* Returns the quality in a member of a JSON message: an OPC UA status code, or a word that begins with a severity such as
-   "good". Uncertain for anything else. */
+/* Returns the quality in a member of a JSON message: an OPC UA status code, a boolean, or a word that begins with a severity such
+   as "good". Publishers may write the code and the boolean as text. Uncertain for anything else. */
 static uint32_t read_quality(const json_t *json)
 {
     static const struct {
@@ -97,11 +104,12 @@ static uint32_t read_quality(const json_t *json)
         uint32_t quality;
     } words[] = { { "good", QUALITY_GOOD }, { "ok", QUALITY_GOOD }, { "bad", QUALITY_BAD } };
     double number;
+    bool is_good = json_is_true(json);
     for (size_t i = 0; json_is_string(json) && i < sizeof(words) / sizeof(*words); i++)
         if (!strncasecmp(json_string_value(json), words[i].word, strlen(words[i].word)))
             return words[i].quality;
-    if (json_is_boolean(json))
-        return json_is_true(json) ? QUALITY_GOOD : QUALITY_BAD;
+    if (json_is_boolean(json) || (json_is_string(json) && boolean_of(json_string_value(json), &is_good)))
+        return is_good ? QUALITY_GOOD : QUALITY_BAD;
     bool is_code = read_number(json, &number) && (number == 0 || (number >= 65536 && number <= UINT32_MAX));
     return is_code ? (uint32_t)number : QUALITY_UNCERTAIN;
 }
