@@ -241,6 +241,13 @@ test('invalid Sparkplug payloads, and metrics that change their type, are refuse
     await until('TI-2', { ...good, value: -5 });
     await until('PI-1', { quality_name: 'Bad_ConfigurationError' });
     await plant.daemon.line(/U100\/edge\/skid: the Sparkplug birth certificate has no metric 'Raw', nor metrics of other tags/);
+    // after a gap, the tags without a metric do not get the values of the earlier birth certificate back
+    node.seq += 3;
+    node.publishNodeData({ timestamp: Date.now(), metrics: [{ alias: 1, type: 'Double', value: 30 }] });
+    await until('TI-1', { ...good, value: 30 });
+    await until('TI-2', { quality_name: 'Uncertain_LastUsableValue', value: -5 });
+    for (const name of ['PI-1', 'XS-1'])
+        assert.equal((await plant.tags())[name].quality_name, 'Bad_ConfigurationError', name);
 });
 
 // A node sends 4,000 metrics five times a second, split into messages of `each` metrics.

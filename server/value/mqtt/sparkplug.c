@@ -310,8 +310,9 @@ static bool take_birth(struct sparkplug *sparkplug, struct sparkplug_node *node,
     int first = 0;
     learn(sparkplug, node, topic, payload);
     sparkplug->is_born[topic] = true;
+    /* also forgets the last values: a tag whose metric is not in the certificate must not get one back after a gap (doubt_all()) */
     for (size_t i = 0; i < of->tag_count; i++)
-        sparkplug->in_message[of->tags[i]] = false;
+        sparkplug->in_message[of->tags[i]] = sparkplug->has_last[of->tags[i]] = false;
     bool good = take_metrics(sparkplug, node, topic, payload, why);
     for (size_t i = 0; i < of->tag_count; i++) {
         int tag = of->tags[i];
