@@ -495,6 +495,14 @@ bool store_link_is_up(const struct store *store, int source)
     return up;
 }
 
+bool store_has_value(struct store *store, int tag)
+{
+    pthread_mutex_lock(&store->lock);
+    bool has_value = store->tags[tag].has_value;
+    pthread_mutex_unlock(&store->lock);
+    return has_value;
+}
+
 static void read_held(struct store *store, size_t tag, int64_t now_mono_ns, struct reading *out)
 {
     const struct held *held = &store->tags[tag];

@@ -90,6 +90,8 @@ void store_link_down(struct store *store, int source, int64_t now_mono_ns);
 /* Sets the alarm that a tag's readings show from now on: its kind (enum alarm_kind) and its state (enum alarm_status). */
 void store_set_alarm(struct store *store, int tag, int alarm, int status);
 bool store_link_is_up(const struct store *store, int source);
+/* Returns true if the tag has had a usable value, from a sample, from the plant before a reload or from a core. */
+bool store_has_value(struct store *store, int tag);
 /* Copies all readings, with their qualities as of now, into a snapshot that was made for the same plant. */
 void store_snapshot(struct store *store, int64_t now_mono_ns, int64_t now_utc_ns, struct snapshot *into);
 /* Copies all readings into a snapshot, for the owner of the store_watch() callback; from now on, the callback reports later

@@ -71,11 +71,12 @@ static bool take_number(struct mqtt_source *mqtt, const struct mqtt_topic *topic
 }
 
 /* Handles a JSON message that lacks a tag's value. If no message has contained a value of the tag yet, the tag's path is
-   probably wrong, so the tag becomes Bad_NoMatch. */
+   probably wrong, so the tag becomes Bad_NoMatch. A value in the store may come from an earlier source with the same path: from
+   before a reload, or from the core whose lead this daemon has taken over. */
 static void note_absent(struct mqtt_source *mqtt, const struct mqtt_topic *topic, const struct mqtt_reader *reader, int tag)
 {
     char name[64], more[LOG_PACE_BYTES];
-    if (mqtt->matched[tag])
+    if (mqtt->matched[tag] || store_has_value(mqtt->base.store, tag))
         return;
     stamped_writer_add_bad(&mqtt->writer, tag, QUALITY_BAD_NO_MATCH);
     if (log_pace_take(&mqtt->absences, clock_mono_ns(), more))
