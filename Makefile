@@ -322,6 +322,8 @@ $(out)/tests/faults/escape: $(out)/obj/tests/faults/escape.o
 # These tests make chosen allocations fail.
 $(out)/tests/unit/relocation_test $(out)/tests/gpu/drawn_error_test: private ldflags += -Wl,--wrap=mem_try_array
 $(out)/tests/gpu/field_memory_test: ldflags += -Wl,--wrap=mem_try_array,--wrap=pool_take
+# This test resolves a host name to addresses of its choice.
+$(out)/tests/unit/modbus_test: private ldflags += -Wl,--wrap=getaddrinfo
 # This test sets the wall clock.
 $(out)/tests/unit/historian_test: ldflags += -Wl,--wrap=clock_utc_ns
 .SECONDARY:

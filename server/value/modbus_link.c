@@ -9,6 +9,7 @@
 #include <netinet/tcp.h>
 #include <poll.h>
 #include <stdio.h>
+#include <string.h>
 #include <sys/ioctl.h>
 #include <sys/select.h>
 #include <sys/socket.h>
@@ -56,6 +57,7 @@ struct modbus_link {
        when the answer to that request arrived. */
     int64_t opened_ns, sent_ns, first_answered_ns;
     struct lookup *lookup;
+    struct sockaddr_storage last; /* address of the last connection; all zero: none */
     char name[300];
 };
 
@@ -228,21 +230,37 @@ static int connect_one(const struct addrinfo *to, int stop_fd, int64_t deadline_
     return status;
 }
 
+/* Tries the addresses of a host in turn until one accepts the connection; each gets an equal share of the remaining time. Begins with
+   the address of the last connection, so that an address that never answers costs time only once. found: list of the addresses. */
+static int connect_in_turn(struct modbus_link *link, const struct addrinfo *found, int64_t deadline_ns, int *out_fd)
+{
+    const struct addrinfo *to = found;
+    int status = -EHOSTUNREACH, left = 0;
+    for (const struct addrinfo *at = found; at; at = at->ai_next, left++)
+        if (memcmp(at->ai_addr, &link->last, at->ai_addrlen) == 0)
+            to = at;
+    for (; left > 0 && status != 0 && status != -ECANCELED; left--) {
+        int64_t now_ns = clock_mono_ns();
+        status = connect_one(to, link->stop_fd, now_ns + (deadline_ns - now_ns) / left, out_fd);
+        if (status == 0)
+            memcpy(&link->last, to->ai_addr, to->ai_addrlen);
+        to = to->ai_next ? to->ai_next : found;
+    }
+    return status;
+}
+
 static int connect_any(struct modbus_link *link, int64_t deadline_ns, int *out_fd)
 {
-    const struct addrinfo *to = NULL;
+    const struct addrinfo *found = NULL;
     if (!link->lookup)
         link->lookup = lookup_start(link->source->hosts[link->host], link->source->port);
-    int status = lookup_wait(link->lookup, link->stop_fd, deadline_ns, &to);
+    int status = lookup_wait(link->lookup, link->stop_fd, deadline_ns, &found);
     /* the system's resolver has not answered yet; link->lookup is kept, so that the next attempt to connect waits for the same
        answer */
     if (status == -ETIMEDOUT)
         return status;
-    for (; to; to = to->ai_next) {
-        status = connect_one(to, link->stop_fd, deadline_ns, out_fd);
-        if (status == 0 || status == -ECANCELED)
-            break;
-    }
+    if (status == 0)
+        status = connect_in_turn(link, found, deadline_ns, out_fd);
     lookup_destroy(&link->lookup); /* resolves the host name again for each connection, because addresses change */
     return status;
 }

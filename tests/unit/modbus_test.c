@@ -4,6 +4,7 @@
 #include "tests/support/test.h"
 #include <arpa/inet.h>
 #include <limits.h>
+#include <netdb.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -394,9 +395,9 @@ struct full { /* a listening socket whose backlog is full, so that further conne
     int listener, clients[4];
 };
 
-static void full_open(struct full *full, int port)
+static void full_open(struct full *full, const char *address, int port)
 {
-    struct sockaddr_in at = { .sin_family = AF_INET, .sin_port = htons((uint16_t)port), .sin_addr.s_addr = htonl(INADDR_LOOPBACK) };
+    struct sockaddr_in at = { .sin_family = AF_INET, .sin_port = htons((uint16_t)port), .sin_addr.s_addr = inet_addr(address) };
     int on = 1;
     full->listener = socket(AF_INET, SOCK_STREAM, 0);
     setsockopt(full->listener, SOL_SOCKET, SO_REUSEADDR, &on, sizeof(on));
@@ -418,7 +419,7 @@ static void full_close(struct full *full)
 CASE(stops_while_a_connection_hangs)
 {
     struct full full;
-    full_open(&full, s->device.port);
+    full_open(&full, "127.0.0.1", s->device.port);
     modbus_case_add_registers(s, 1);
     s->plant->sources[0].timeout_ms = 20000;
     modbus_case_start(s);
@@ -431,7 +432,7 @@ CASE(stops_while_a_connection_hangs)
 CASE(connecting_ends_by_its_deadline)
 {
     struct full full;
-    full_open(&full, s->device.port);
+    full_open(&full, "127.0.0.1", s->device.port);
     modbus_case_be_impatient(s);
     modbus_case_add_registers(s, 1);
     modbus_case_start(s);
@@ -447,6 +448,44 @@ CASE(names_are_looked_up)
     s->plant->sources[0].hosts[0] = mem_strdup("localhost");
     modbus_case_serve(s);
     modbus_case_expect(s, 0, QUALITY_GOOD, 5);
+}
+
+/* --- host names with several addresses */
+
+static const char TWO_ADDRESSES[] = "two.test"; /* a host name with the addresses 127.0.0.2 and 127.0.0.1, in this order */
+int __real_getaddrinfo(const char *host, const char *port, const struct addrinfo *hints, struct addrinfo **out);
+int __wrap_getaddrinfo(const char *host, const char *port, const struct addrinfo *hints, struct addrinfo **out);
+
+int __wrap_getaddrinfo(const char *host, const char *port, const struct addrinfo *hints, struct addrinfo **out)
+{
+    if (strcmp(host, TWO_ADDRESSES) != 0)
+        return __real_getaddrinfo(host, port, hints, out);
+    if (__real_getaddrinfo("127.0.0.2", port, hints, out) != 0)
+        return EAI_FAIL;
+    return __real_getaddrinfo("127.0.0.1", port, hints, &(*out)->ai_next);
+}
+
+/* The first address of the host name never answers. The source must connect to the second one within one timeout, and at once when
+   it connects again. */
+CASE(each_address_of_a_name_is_tried)
+{
+    struct full full;
+    full_open(&full, "127.0.0.2", s->device.port);
+    modbus_case_add_registers(s, 1);
+    struct plant_source *source = &s->plant->sources[0];
+    mem_free(source->hosts[0]);
+    source->hosts[0] = mem_strdup(TWO_ADDRESSES);
+    source->timeout_ms = 3000;
+    source->poll_ms = 20;
+    source->close_between_polls = true;
+    modbus_case_serve(s);
+    modbus_case_expect(s, 0, QUALITY_GOOD, 5);
+    int64_t began_ns = clock_mono_ns();
+    while (s->device.connections < 5 && clock_mono_ns() - began_ns < 60 * NS_PER_S)
+        sleep_ns(5 * NS_PER_MS);
+    /* without remembering the second address, each of these connections would take 1.5 s */
+    assert_true(clock_mono_ns() - began_ns < 3 * NS_PER_S);
+    full_close(&full);
 }
 
 CASE(two_sources_may_name_one_device)
