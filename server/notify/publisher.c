@@ -40,6 +40,7 @@ struct publisher {
     counter *up, *messages;
     /* --- below: members that only the publisher's thread uses */
     struct mqtt_client *client;
+    int address; /* which of the broker's IP addresses to use, see mqtt_client_next_address() */
     struct snapshot *snapshot;
     struct topic *topics; /* by tag: its MQTT topic */
     uint64_t alarm_number;
@@ -172,8 +173,9 @@ static int run_session(struct publisher *publisher, char why[200])
     const int64_t every_ns = (int64_t)(config->every_s * NS_PER_S);
     int64_t deadline_ns = clock_mono_ns() + CONNECT_NS, next_ns = 0;
     publisher->connected = false;
-    publisher->client = mqtt_client_start(&config->broker, 0, publisher->client_id, &events, why);
+    publisher->client = mqtt_client_start(&config->broker, 0, publisher->address, publisher->client_id, &events, why);
     int status = publisher->client ? mqtt_client_wait(publisher->client, publisher->stop_fd, deadline_ns, why) : -EINVAL;
+    publisher->address = mqtt_client_next_address(publisher->address, status);
     while (status == 0) {
         int64_t now_ns = clock_mono_ns(), until_ns = publisher->connected && next_ns > now_ns ? next_ns : now_ns + NS_PER_S / 10;
         status = mqtt_client_serve(publisher->client, publisher->stop_fd, until_ns, why);

@@ -2,7 +2,10 @@
 // Tests sources of type mqtt with Debian's broker mosquitto. Numbers and JSON must arrive with their true age and quality, and
 // invalid payloads must be refused. All tags must be Bad while the broker is down, and recover afterwards.
 import assert from 'node:assert/strict';
-import { createServer } from 'node:net';
+import { spawn, spawnSync } from 'node:child_process';
+import { writeFileSync } from 'node:fs';
+import { connect, createServer } from 'node:net';
+import { join } from 'node:path';
 import packets from 'mqtt-packet';
 import { afterEach, test } from 'node:test';
 import { Broker, missingBroker } from './support/broker.mjs';
@@ -184,6 +187,44 @@ test('a persistent session delivers values published meanwhile, with their true 
     // The broker keeps no messages that are published with QoS 0 during the reload.
     await plant.reload();
     await until('PI-1', { quality_name: 'Uncertain_LastUsableValue', value: 2 });
+});
+
+// two.test has the addresses 127.0.0.1, which never answers because the queue of connections there is full, and 127.0.0.9. The
+// resolver returns them in this order.
+const FULL = `import socket, sys, time
+s = socket.socket()
+s.bind(('127.0.0.1', 0))
+s.listen(0)
+waiting = [socket.socket() for _ in range(4)]
+for one in waiting:
+    one.setblocking(False)
+    one.connect_ex(s.getsockname())
+print(s.getsockname()[1], flush=True)
+time.sleep(600)`;
+const canMount = process.getuid() === 0 && spawnSync('unshare', ['--mount', 'true']).status === 0;
+test('if the first address of a broker\'s name never answers, the next one is used', { ...options,
+    skip: options.skip || !canMount && 'no right to mount' }, async () => {
+    const full = spawn('/usr/bin/python3', ['-c', FULL], { stdio: ['ignore', 'pipe', 'inherit'] });
+    const port = Number(await new Promise((done) => full.stdout.once('data', done)));
+    const relay = createServer((socket) => {
+        socket.on('error', () => {});
+        socket.pipe(connect(broker.port, '127.0.0.1').on('error', () => {})).pipe(socket);
+    });
+    const hosts = join(plant.folder, 'hosts');
+    try {
+        await new Promise((done) => relay.listen(port, '127.0.0.9', done));
+        writeFileSync(hosts, '127.0.0.1 localhost\n127.0.0.1 two.test\n127.0.0.9 two.test\n');
+        plant.plant.before = ['unshare', '--mount', 'sh', '-c', `mount --bind ${hosts} /etc/hosts && exec "$@"`, 'sh'];
+        plant.broker = { source: (keys) => `{ id: broker, type: mqtt, host: two.test, port: ${port}, ${keys} }` };
+        await run('topic: "plant/{asset}/{tag}"', TAGS.number);
+        await plant.said(/no readings \(Connection timed out\)[^]*reading/);
+    } finally {
+        plant.broker = broker;
+        plant.plant.before = [];
+        await plant.daemon?.stop();
+        relay.close();
+        full.kill();
+    }
 });
 
 // A malicious broker sends messages to which the client has not subscribed, with topics of the maximum length of 64 kB, each

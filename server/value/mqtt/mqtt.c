@@ -98,8 +98,10 @@ static int run_session(struct mqtt_source *mqtt, char why[200])
         .arg = mqtt, .connected = on_connected, .subscribed = on_subscribed, .topic_refused = on_topic_refused, .message = on_message
     };
     int64_t deadline_ns = clock_mono_ns() + CONNECT_NS, tick_ns = 0;
-    mqtt->client = mqtt_client_start(mqtt->base.config, mqtt->turn.index, mqtt->client_id, &events, why);
+    int *address = &mqtt->addresses[mqtt->turn.index];
+    mqtt->client = mqtt_client_start(mqtt->base.config, mqtt->turn.index, *address, mqtt->client_id, &events, why);
     int status = mqtt->client ? mqtt_client_wait(mqtt->client, mqtt->base.stop_fd, deadline_ns, why) : -EINVAL;
+    *address = mqtt_client_next_address(*address, status);
     while (status == 0) {
         int64_t now_ns = clock_mono_ns();
         mqtt_log_left_out(mqtt, now_ns);

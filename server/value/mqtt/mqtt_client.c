@@ -5,6 +5,7 @@
 #include <errno.h>
 #include <mosquitto.h>
 #include <mqtt_protocol.h>
+#include <netdb.h>
 #include <openssl/ssl.h>
 #include <poll.h>
 #include <pthread.h>
@@ -32,6 +33,7 @@ struct mqtt_client {
     const struct mqtt_client_events *events;
     char *host; /* copies of the host's name and settings for the connecting thread, because that thread may outlive the source */
     int port, keepalive_s;
+    int address; /* selects one of the host's IP addresses, by this index modulo their number; 0: all, in turn */
     mosquitto_property *properties;
     int done_fd; /* eventfd that becomes readable once the attempt to connect has succeeded or failed */
     _Atomic int users;
@@ -130,10 +132,35 @@ static mosquitto_property *connect_properties(const struct plant_mqtt *mqtt)
     return properties;
 }
 
+int mqtt_client_next_address(int address, int status)
+{
+    return status == 0 ? address : status == -ETIMEDOUT ? address + 1 : 0;
+}
+
+/* Writes the selected IP address of the host. Returns false if all addresses of the host's name shall be tried. */
+static bool select_address(const struct mqtt_client *client, char address[NI_MAXHOST])
+{
+    const struct addrinfo hints = { .ai_family = AF_UNSPEC, .ai_socktype = SOCK_STREAM };
+    struct addrinfo *found;
+    int count = 0;
+    if (client->address == 0 || getaddrinfo(client->host, NULL, &hints, &found) != 0)
+        return false;
+    for (const struct addrinfo *at = found; at; at = at->ai_next)
+        count++;
+    const struct addrinfo *at = found;
+    for (int i = 0; i < client->address % count; i++)
+        at = at->ai_next;
+    bool good = at != found && getnameinfo(at->ai_addr, at->ai_addrlen, address, NI_MAXHOST, NULL, 0, NI_NUMERICHOST) == 0;
+    freeaddrinfo(found);
+    return good;
+}
+
 static void *connect_main(void *arg)
 {
     struct mqtt_client *client = arg;
-    int status = mosquitto_connect_bind_v5(client->library, client->host, client->port, client->keepalive_s, NULL, client->properties);
+    char address[NI_MAXHOST];
+    const char *to = select_address(client, address) ? address : client->host;
+    int status = mosquitto_connect_bind_v5(client->library, to, client->port, client->keepalive_s, NULL, client->properties);
     client->errno_then = errno;
     client->status = status;
     eventfd_write(client->done_fd, 1);
@@ -209,8 +236,8 @@ static bool prepare(struct mqtt_client *client, const char *id, char why[200])
     return use_tls(client, why) && log_in(client, why) && leave_will(client, why);
 }
 
-struct mqtt_client *mqtt_client_start(const struct plant_source *source, int host, const char *id, const struct mqtt_client_events *events,
-                                      char why[200])
+struct mqtt_client *mqtt_client_start(const struct plant_source *source, int host, int address, const char *id,
+                                      const struct mqtt_client_events *events, char why[200])
 {
     pthread_t thread;
     struct mqtt_client *client = mem_new(sizeof(*client));
@@ -218,6 +245,7 @@ struct mqtt_client *mqtt_client_start(const struct plant_source *source, int hos
                                     .events = events,
                                     .host = mem_strdup(source->hosts[host]),
                                     .port = source->port,
+                                    .address = source->mqtt.has_tls ? 0 : address,
                                     .keepalive_s = source->mqtt.keepalive_s,
                                     .properties = connect_properties(&source->mqtt),
                                     .users = 1 };

@@ -32,10 +32,15 @@ struct mqtt_client_events {
     void (*message)(void *arg, const struct mqtt_message *message);
 };
 
-/* Starts connecting to one of the source's hosts (`host`: its index). Returns NULL with the reason in `why` if the attempt could not be
-   started. `source` and `events` must outlive the client. */
-struct mqtt_client *mqtt_client_start(const struct plant_source *source, int host, const char *id, const struct mqtt_client_events *events,
-                                      char why[200]);
+/* Starts connecting to one of the source's hosts (`host`: its index). address: the host's state, see mqtt_client_next_address().
+   Returns NULL with the reason in `why` if the attempt could not be started. `source` and `events` must outlive the client. */
+struct mqtt_client *mqtt_client_start(const struct plant_source *source, int host, int address, const char *id,
+                                      const struct mqtt_client_events *events, char why[200]);
+/* Returns which of a host's IP addresses the next client must use; status: result of mqtt_client_wait(). 0, the first value: all
+   in turn, as libmosquitto does. libmosquitto waits two minutes for an address that does not answer, longer than its callers. Each
+   timeout therefore selects the next address, which is then used alone until a connection to it fails. With TLS, libmosquitto
+   checks the certificate for the name that it connects to, so it always tries all in turn. */
+int mqtt_client_next_address(int address, int status);
 /* Closes the connection and frees the client, without waiting for the broker; sets *client to NULL. *client may be NULL. */
 void mqtt_client_destroy(struct mqtt_client **client);
 /* Waits until the connection is made, at most until the deadline. Returns 0; -ECANCELED if stop_fd became readable; -ETIMEDOUT; another

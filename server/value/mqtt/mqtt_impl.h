@@ -23,6 +23,7 @@ struct mqtt_source {
     size_t subscription_count;
     struct mqtt_client *client;
     struct host_turn turn;
+    int addresses[PLANT_HOSTS]; /* by host: which of its IP addresses to use, see mqtt_client_next_address() */
     bool link_up, link_known;
     bool subscribed;          /* true: all topics are subscribed, so a message without the retained flag has a new value */
     struct log_pace refusals; /* rate limit of the log line about refused messages */
