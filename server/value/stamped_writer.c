@@ -35,7 +35,9 @@ void stamped_writer_begin(struct stamped_writer *writer, int64_t now_mono_ns, in
 
 void stamped_writer_end(struct stamped_writer *writer)
 {
-    if (writer->count > 0)
+    if (writer->count > 0 && writer->are_undated)
+        store_write_undated(writer->store, writer->samples, writer->count, writer->at_mono_ns, writer->at_utc_ns);
+    else if (writer->count > 0)
         store_write(writer->store, writer->samples, writer->count, writer->at_mono_ns, writer->at_utc_ns);
     writer->written += writer->count;
     writer->count = 0;
@@ -50,24 +52,21 @@ static int64_t mono_of(const struct stamped_writer *writer, int tag, int64_t utc
 }
 
 /* Adds a sample to the batch, whose samples must all have the same time and cannot be more than there are tags. If the sample
-   does not fit, the batch is written first. */
-static void add_sample(struct stamped_writer *writer, const struct sample *sample, int64_t utc_ns)
+   does not fit, the batch is written first. is_undated: utc_ns is not the sender's time. */
+static void add_sample(struct stamped_writer *writer, const struct sample *sample, bool is_undated, int64_t utc_ns)
 {
     int64_t mono_ns = mono_of(writer, sample->tag, utc_ns);
-    if (utc_ns != writer->at_utc_ns || mono_ns != writer->at_mono_ns || writer->count == writer->plant->tag_count)
+    if (utc_ns != writer->at_utc_ns || mono_ns != writer->at_mono_ns || is_undated != writer->are_undated ||
+        writer->count == writer->plant->tag_count)
         stamped_writer_end(writer);
+    writer->are_undated = is_undated;
     writer->at_utc_ns = utc_ns;
     writer->at_mono_ns = mono_ns;
     writer->samples[writer->count++] = *sample;
-    if (utc_ns < writer->last[sample->tag].utc_ns)
+    if (is_undated || utc_ns < writer->last[sample->tag].utc_ns)
         return;
     writer->last[sample->tag].utc_ns = utc_ns;
     writer->last[sample->tag].mono_ns = mono_ns;
-}
-
-static int64_t bad_since_ns(const struct stamped_writer *writer, int tag)
-{
-    return writer->last[tag].is_stated ? writer->last[tag].utc_ns : writer->utc_ns;
 }
 
 void stamped_writer_add(struct stamped_writer *writer, int tag, const struct stamped_value *value, bool was_kept, bool in_order)
@@ -88,11 +87,12 @@ void stamped_writer_add(struct stamped_writer *writer, int tag, const struct sta
     writer->last[tag].is_stated = value->utc_ns != 0;
     if (in_order && utc_ns < writer->last[tag].utc_ns)
         utc_ns = writer->last[tag].utc_ns;
-    add_sample(writer, &sample, utc_ns < writer->utc_ns ? utc_ns : writer->utc_ns);
+    add_sample(writer, &sample, false, utc_ns < writer->utc_ns ? utc_ns : writer->utc_ns);
 }
 
 void stamped_writer_add_bad(struct stamped_writer *writer, int tag, uint32_t quality)
 {
     const struct sample sample = { .tag = tag, .quality = quality };
-    add_sample(writer, &sample, bad_since_ns(writer, tag));
+    bool is_stated = writer->last[tag].is_stated;
+    add_sample(writer, &sample, !is_stated, is_stated ? writer->last[tag].utc_ns : writer->utc_ns);
 }

@@ -18,8 +18,8 @@ struct held {
     bool has_value, lost;
     /* true: the tag is lost, and its last value must not be used although it is recent (store_tags_dead()) */
     bool dead;
-    /* true: the reading comes from the plant before a reload, or from a core. The tag's first sample replaces it, however old
-       that sample is. */
+    /* true: the reading comes from the plant before a reload or from a core, or is undated (store_write_undated()). The tag's next
+       sample replaces it, however old that sample is. */
     bool carried;
     int64_t sampled_mono_ns;                   /* monotonic time of the tag's last sample, whether Good or Bad */
     /* arrival time of the tag's last usable value: received_mono_ns: on the monotonic clock; received_utc_ns: in UTC */
@@ -296,14 +296,13 @@ static bool count_change(struct store *store, size_t tag, bool value_changed, in
     return changed;
 }
 
-static bool hold(struct store *store, const struct sample *sample, int64_t now_mono_ns, int64_t now_utc_ns)
+static bool hold(struct store *store, const struct sample *sample, bool is_undated, int64_t now_mono_ns, int64_t now_utc_ns)
 {
     struct held *held = &store->tags[sample->tag];
     bool bad = quality_is_bad(sample->quality), finite = isfinite(sample->value), value_changed = false;
     if (held->carried) {
         /* a store of a core's readings had no limits of its own (mirror()) */
         set_limits(held, &store->plant->tags[sample->tag].validity);
-        held->carried = false;
     } else if (now_mono_ns < held->sampled_mono_ns) {
         /* Ignores a sample older than the tag's last sample, with one exception: the tag was marked dead (its source was lost),
            and the sample is not older in UTC than the tag's last value, if any. Then the sample shows that the source is back. */
@@ -311,6 +310,7 @@ static bool hold(struct store *store, const struct sample *sample, int64_t now_m
             return false;
         now_mono_ns = held->sampled_mono_ns;
     }
+    held->carried = is_undated;
     held->quality = bad || finite ? sample->quality : QUALITY_BAD_SENSOR_FAILURE;
     held->sampled_mono_ns = now_mono_ns;
     held->lost = held->dead = false;
@@ -339,17 +339,28 @@ static void tell_vouched(struct store *store, int tag, int64_t now_mono_ns, int6
     }
 }
 
-void store_write(struct store *store, const struct sample *samples, size_t count, int64_t now_mono_ns, int64_t now_utc_ns)
+static void write_all(struct store *store, const struct sample *samples, size_t count, bool are_undated, int64_t now_mono_ns,
+                      int64_t now_utc_ns)
 {
     pthread_mutex_lock(&store->lock);
     store->utc_ahead_ns = now_utc_ns - now_mono_ns;
     store->has_utc = true;
     for (size_t i = 0; i < count; i++)
-        if (hold(store, &samples[i], now_mono_ns, now_utc_ns)) {
+        if (hold(store, &samples[i], are_undated, now_mono_ns, now_utc_ns)) {
             tell(store, (size_t)samples[i].tag, store->tags[samples[i].tag].shown_quality, now_mono_ns, now_utc_ns);
             tell_vouched(store, samples[i].tag, now_mono_ns, now_utc_ns);
         }
     pthread_mutex_unlock(&store->lock);
+}
+
+void store_write(struct store *store, const struct sample *samples, size_t count, int64_t now_mono_ns, int64_t now_utc_ns)
+{
+    write_all(store, samples, count, false, now_mono_ns, now_utc_ns);
+}
+
+void store_write_undated(struct store *store, const struct sample *samples, size_t count, int64_t now_mono_ns, int64_t now_utc_ns)
+{
+    write_all(store, samples, count, true, now_mono_ns, now_utc_ns);
 }
 
 static void mirror(struct store *store, const struct mirrored *reading, int64_t now_mono_ns)

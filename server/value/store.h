@@ -57,6 +57,9 @@ void store_unlisten(struct store *store, store_listener *listener, void *arg);
 void store_watch(struct store *store, void (*changed)(void *arg), void *arg);
 /* Writes samples that arrived at this time. If reading the device failed, call store_link_lost() or store_tags_lost() instead. */
 void store_write(struct store *store, const struct sample *samples, size_t count, int64_t now_mono_ns, int64_t now_utc_ns);
+/* Writes samples whose time is not that of their sender, which states times. The next sample of such a tag replaces this one, even if
+   the next one is older. */
+void store_write_undated(struct store *store, const struct sample *samples, size_t count, int64_t now_mono_ns, int64_t now_utc_ns);
 /* a reading as shown in the store of a core (daemon that reads the devices), for a daemon that gets its readings from that core */
 struct mirrored {
     int tag;

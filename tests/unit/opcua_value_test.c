@@ -159,4 +159,38 @@ TEST(what_is_older_than_the_machine_s_start_is_as_old_as_it_is)
     }
     stamped_writer_finish(&writer);
 }
+
+/* A tag is Bad before its sender has stated a time. Its first value, from a sender whose clock is behind ours, must not be ignored. */
+TEST(an_undated_bad_sample_hides_no_older_value)
+{
+    static const int64_t minute_ns = 60 * 1000000000LL;
+    struct plant *plant = plant_by_hand_create(2);
+    plant_by_hand_source(plant, "plc", 4840);
+    for (int tag = 0; tag < 2; tag++)
+        plant_by_hand_tag(plant, tag ? "B" : "A", TABLE_HOLDING, tag, DATA_FLOAT64)->validity.stale_s = PLANT_NEVER_STALE_S;
+    struct store *store = test_store(plant);
+    struct snapshot *snapshot = test_snapshot(2);
+    struct stamped_writer writer;
+    const struct stamped_value value = { .value = 4, .quality = QUALITY_GOOD, .utc_ns = NOW_UTC_NS - minute_ns };
+    stamped_writer_init(&writer, plant, store);
+    for (int tag = 0; tag < 2; tag++) {
+        stamped_writer_begin(&writer, NOW_MONO_NS, NOW_UTC_NS);
+        stamped_writer_add_bad(&writer, tag, QUALITY_BAD_NO_MATCH);
+        stamped_writer_end(&writer);
+        stamped_writer_add(&writer, tag, &value, false, tag == 1);
+        stamped_writer_end(&writer);
+        store_snapshot(store, NOW_MONO_NS, NOW_UTC_NS, snapshot);
+        assert_int_equal(snapshot->readings[tag].quality, QUALITY_GOOD);
+        assert_true(snapshot->readings[tag].age_ns == minute_ns);
+        /* a Bad quality after a value with a stated time counts from that time, and hides older values */
+        const struct stamped_value older = { .value = 5, .quality = QUALITY_GOOD, .utc_ns = NOW_UTC_NS - 2 * minute_ns };
+        stamped_writer_add_bad(&writer, tag, QUALITY_BAD_NO_MATCH);
+        stamped_writer_end(&writer);
+        stamped_writer_add(&writer, tag, &older, false, false);
+        stamped_writer_end(&writer);
+        store_snapshot(store, NOW_MONO_NS, NOW_UTC_NS, snapshot);
+        assert_int_equal(snapshot->readings[tag].quality, QUALITY_BAD_NO_MATCH);
+    }
+    stamped_writer_finish(&writer);
+}
 #endif
