@@ -98,12 +98,13 @@ static bool add_camera(struct view_address *out, const char *value)
     bool parallel = count == CAMERA_NUMBERS;
     if (count < CAMERA_NUMBERS - 1)
         return false;
-    char text[8 * 32], height[32];
+    char text[8 * 32], up[3 * 32], height[32];
     int length = snprintf(text, sizeof(text), "%.9g,%.9g,%.9g,%.9g,%.9g,%.9g", n[0], n[1], n[2], n[3], n[4], n[5]);
     if (!parallel)
         snprintf(text + length, sizeof(text) - (size_t)length, ",%.9g", n[9]);
+    snprintf(up, sizeof(up), "%.9g,%.9g,%.9g", n[6], n[7], n[8]);
     snprintf(height, sizeof(height), "%.9g", parallel ? n[10] : 0);
-    return view_address_add(out, "camera", text) &&
+    return view_address_add(out, "camera", text) && view_address_add(out, "up", up) &&
            (!parallel || (view_address_add(out, "projection", "orthographic") && view_address_add(out, "height_m", height)));
 }
 
@@ -196,13 +197,9 @@ bool view_address_replaces(const char *given, const char *name)
 {
     static const struct {
         const char *given, *replaces;
-    } together[] = { { "camera", "projection" },
-                     { "camera", "height_m" },
-                     { "projection", "height_m" },
-                     { "fit", "camera" },
-                     { "fit", "projection" },
-                     { "fit", "height_m" },
-                     { "clip", "clip_box" },
+    } together[] = { { "camera", "up" },           { "camera", "projection" }, { "camera", "height_m" },
+                     { "projection", "height_m" }, { "fit", "camera" },        { "fit", "up" },
+                     { "fit", "projection" },      { "fit", "height_m" },      { "clip", "clip_box" },
                      { "clip_box", "clip" } };
     size_t length = strcspn(given, "=");
     bool replaced = length == strcspn(name, "=") && !strncmp(given, name, length);

@@ -25,8 +25,8 @@ TEST(names_and_forms_are_those_of_queries)
     assert_read("group=vib%20ration&tag=TI-1&hide=A,%ED%95%9C&only=B&asset=E-101", "group=vib ration | hidden=A,\xed\x95\x9c | isolate=B | "
                                                                                    "selected=E-101");
     assert_read("hide=", "hidden=");
-    assert_read("camera=1,2,3,4,5,6,0,0,1,45", "camera=1,2,3,4,5,6,45");
-    assert_read("camera=1,2,3,4,5,6,0,0,1,45,2.5", "camera=1,2,3,4,5,6 | projection=orthographic | height_m=2.5");
+    assert_read("camera=1,2,3,4,5,6,0,0,1,45", "camera=1,2,3,4,5,6,45 | up=0,0,1");
+    assert_read("camera=1,2,30,1,2,3,0,1,0,45,2.5", "camera=1,2,30,1,2,3 | up=0,1,0 | projection=orthographic | height_m=2.5");
     assert_read("clip=0,0,1,2;1,0,0,3", "clip=0,0,1,2;1,0,0,3");
     assert_read("clip=0,0,0,1,1,1", "clip_box=0,0,0,1,1,1");
     assert_read("split=group:pressure;look:flat", "split=group=pressure;look=flat");
@@ -59,4 +59,19 @@ TEST(more_than_there_is_room_for)
     assert_false(view_address_read(&read, text->at, &error));
     assert_int_equal(read.count, VIEW_ADDRESS_ARGS);
     view_address_finish(&read);
+}
+
+TEST(another_camera_replaces_that_of_a_view_with_its_vertical)
+{
+    static const char *const given[] = { "camera=1,2,3,4,5,6", "fit=E-101" };
+    for (size_t i = 0; i < sizeof(given) / sizeof(given[0]); i++) {
+        struct view_address read;
+        struct message_error error = { 0 };
+        assert_true(view_address_read(&read, "camera=1,2,30,1,2,3,0,1,0,45,2.5&look=flat", &error));
+        assert_true(view_address_set(&read, given[i]));
+        assert_int_equal(read.count, 2);
+        assert_string_equal(read.args[0], "look=flat");
+        assert_string_equal(read.args[1], given[i]);
+        view_address_finish(&read);
+    }
 }
