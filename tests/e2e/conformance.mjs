@@ -41,7 +41,7 @@ test('the welcome message has all fields that PROTOCOL.md lists', { skip }, asyn
     assert.ok(welcome.resume_s > 0 && welcome.resumed === false && welcome.limits.message_bytes >= 1024);
     assert.ok(welcome.limits.messages_per_s > 0 && welcome.limits.pixels >= 320 * 180);
     assert.deepEqual([welcome.codec, typeof welcome.session, typeof welcome.server], ['jpeg', 'number', 'string']);
-    assert.deepEqual(Object.keys(welcome.plant).sort(), ['bounds', 'configuration', 'home', 'name', 'outline', 'time_zone']);
+    assert.deepEqual(Object.keys(welcome.plant).sort(), ['bounds', 'configuration', 'home', 'name', 'outline', 'time_zone', 'up']);
     const lists = {
         groups: ['id', 'quantity', 'unit', 'min', 'max', 'limits', 'interpolation', 'distance', 'fill', 'power', 'radius_m', 'reach_m',
             'singles', 'scale', 'breaks', 'isolines'],

@@ -6,6 +6,7 @@
 #include <jansson.h>
 
 #include "base/clock.h"
+#include "base/mem.h"
 #include "session/reply/reply.h"
 #include "session/session_impl.h"
 #include "render/depth_grid.h"
@@ -348,6 +349,33 @@ CASE(welcome_tells_the_plant_and_no_addresses)
     rgb = json_object_get(json_array_get(json_object_get(welcome, "colormaps"), 0), "rgb");
     assert_int_equal(json_string_length(rgb), 1024);
     assert_string_equal(json_string_value(json_object_get(json_object_get(welcome, "view"), "group")), "temperature");
+}
+
+static void assert_axis(const json_t *welcome, int axis)
+{
+    const json_t *up = json_object_get(json_object_get(welcome, "plant"), "up");
+    assert_int_equal(json_array_size(up), 3);
+    for (int i = 0; i < 3; i++)
+        assert_true(json_number_value(json_array_get(up, (size_t)i)) == (i == axis));
+}
+
+CASE(welcome_tells_the_vertical_and_the_initial_quantity_of_the_plant)
+{
+    struct plant other = *f->context.plant;
+    struct text *text = test_text();
+    say(f, HELLO);
+    assert_true(session_next_text(f->session, f->now_ns, f->now_ns, text));
+    json_t *welcome = test_json(json_loads(text->at, 0, NULL));
+    assert_axis(welcome, 2);
+    assert_null(json_object_get(json_object_get(welcome, "plant"), "show"));
+    other.up = AXIS_Y;
+    other.display.show = PLANT_SHOW_OPERATOR;
+    f->context.plant = &other;
+    char *again = reply_welcome_text(f->session, f->now_ns);
+    welcome = test_json(json_loads(again, 0, NULL));
+    mem_free(again);
+    assert_axis(welcome, 1);
+    assert_string_equal(json_string_value(json_object_get(json_object_get(welcome, "plant"), "show")), "operator");
 }
 
 CASE(first_picture_comes_at_once_then_refined_then_nothing)

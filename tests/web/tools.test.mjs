@@ -3,11 +3,15 @@
 // to share.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
+import { Measure } from '../../clients/web/app/measure/measure.js';
+import { Picture } from '../../clients/web/app/picture/picture.js';
+import { Headset } from '../../clients/web/app/xr/headset.js';
 import { health, simulatedText } from '../../clients/web/core/health.js';
 import { shareLinks } from '../../clients/web/core/links.js';
 import { farText, measure, metresText } from '../../clients/web/core/measure.js';
 import { Wake } from '../../clients/web/core/wake.js';
 import { LEAST, MINUTES, readWall, wallFit, wallScale } from '../../clients/web/core/wall.js';
+import { learnWords } from '../../clients/web/core/words.js';
 import { makeSession, vector } from './fixtures.mjs';
 
 test('sleep is detected when the calendar advances without the monotonic clock', () => {
@@ -82,6 +86,27 @@ test('a wall\'s capitals are at least 16 minutes of arc high, wherever the scree
         'letters are legible from the stated distance');
     const near = { inches: 85, metres: 8 };
     assert.deepEqual(wallFit(near, screen, screen), { scale: wallScale(near, screen), metres: 8 });
+});
+
+test('the vertical is the plant\'s, also if its home view looks straight down with north as `up`', async () => {
+    await learnWords();
+    const { connection, session, sockets } = makeSession(), welcome = vector('server/welcome.json');
+    connection.start();
+    sockets[0].accept();
+    sockets[0].say({ ...welcome, plant: { ...welcome.plant, home: { eye: [1, 2, 90], target: [1, 2, 0], up: [0, 1, 0], fov: 45 } } });
+    session.camera = session.model.plant.home;
+    const written = [], label = { style: {}, replaceChildren: (...parts) => written.push(...parts) };
+    globalThis.document = { createElement: () => ({ append() {} }) };
+    try {
+        Measure.prototype.write.call({ session, places: [[0, 0, 0], [3, 4, 0]], label, viewport: { width: 640, height: 360 } }, 9, 9);
+    } finally {
+        delete globalThis.document;
+    }
+    assert.equal(written[1], ' horizontal 5.000 m, vertical 0.000 m');
+    assert.equal(Object.getOwnPropertyDescriptor(Picture.prototype, 'isYUp').get.call({ session }), false);
+    const headset = { session, viewport: { warp: { hide() {} } }, modules: { there: () => null }, floorM: 0 };
+    Headset.prototype.borrow.call(headset);
+    assert.deepEqual(headset.rig.axes[1], [0, 0, 1]);
 });
 
 test('distances: straight, level and rise are measured, with as many figures as a tape has', () => {

@@ -13,7 +13,7 @@ export const quantityText = ({ quantity, id }) => sayIfKnown(`quantity.${(quanti
 
 export class Model {
     constructor(welcome) {
-        this.plant = welcome.plant;
+        this.plant = { up: welcome.plant.home?.up, ...welcome.plant }; // an older server sends no `up`
         this.groups = welcome.groups;
         this.tags = welcome.tags.map((tag, index) => ({ ...tag, index }));
         this.colormaps = welcome.colormaps.map((map) => ({ ...map, rgb: decodeBase64(map.rgb) }));

@@ -162,6 +162,10 @@ static json_t *plant_object(const struct session_context *context, const struct 
     const struct scene *scene = context->services->scene;
     json_t *object = json_pack("{s:o,s:o,s:o}", "name", string(context->plant->name), "time_zone", string(context->plant->time_zone),
                                "bounds", box(scene->bounds_min_m, scene->bounds_max_m));
+    bool y_up = context->plant->up == AXIS_Y;
+    json_object_set_new(object, "up", vector((double[3]){ 0, y_up, !y_up }));
+    if (context->plant->display.show == PLANT_SHOW_OPERATOR)
+        json_object_set_new(object, "show", json_string("operator"));
     json_object_set_new(object, "configuration", string(context->plant->files.hash));
     if (context->node)
         json_object_set_new(object, "node", string(context->node));

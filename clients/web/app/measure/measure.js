@@ -81,7 +81,7 @@ export class Measure {
     }
 
     write(x, y) {
-        const { metres, level, rise } = measure(...this.places, this.session.camera.up);
+        const { metres, level, rise } = measure(...this.places, this.session.model.plant.up);
         this.label.hidden = false;
         this.label.replaceChildren(make('b', {}, `${metresText(metres)} m`), ` ${say('measure.parts', {
             level: metresText(level), rise: metresText(rise) })}`);

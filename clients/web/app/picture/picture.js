@@ -50,7 +50,7 @@ export class Picture {
     // --- light
 
     get isYUp() {
-        const { up } = this.session.model.plant.home;
+        const { up } = this.session.model.plant;
         return up[1] > up[2];
     }
 

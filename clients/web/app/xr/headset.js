@@ -76,7 +76,7 @@ export class Headset {
         if (!viewport.warp)
             throw new Error(say('xr.flat.why'));
         this.identity = model.identity;
-        this.rig = rigFor(seen, model.plant.bounds, model.plant.home.up);
+        this.rig = rigFor(seen, model.plant.bounds, model.plant.up);
         this.rig.at = along(this.rig.at, this.rig.axes[1], this.floorM);
         this.before = { camera, size: session.size, split: params.split ?? null, onDrawn: viewport.onDrawn, warp: viewport.warp,
             picture: session.picture };
