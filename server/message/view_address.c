@@ -25,6 +25,7 @@ static const struct {
     { "fill", "fill" },
     { "scale", "scale" },
     { "show", "show" },
+    { "arrows", "arrows" },
     { "sensor", "sensor" },
     { "environment", "environment" },
     { "baseline", "baseline" },

@@ -31,6 +31,7 @@ TEST(names_and_forms_are_those_of_queries)
     assert_read("clip=0,0,0,1,1,1", "clip_box=0,0,0,1,1,1");
     assert_read("split=group:pressure;look:flat", "split=group=pressure;look=flat");
     assert_read("split=same", "split=");
+    assert_read("show=blind&isolines=none&arrows=strokes", "show=blind | isolines=none | arrows=strokes");
     assert_read("ramp=5&radius=2&reach=1", "ramp_interval=5 | radius_m=2 | reach_m=1");
     assert_read("group=a%zzb%4", "group=a%zzb%4");
     assert_read("group=a%00b", "group=a%00b"); /* no text ends there */

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { readAddress, writeAddress } from '../../clients/web/core/address.js';
-import { idFor, isEngineers, regained, viewOf } from '../../clients/web/core/named_views.js';
+import { idFor, isEngineers, regained, textOf, viewOf } from '../../clients/web/core/named_views.js';
 import { makeSession, vector } from './fixtures.mjs';
 
 const welcome = vector('server/welcome.json');
@@ -35,6 +35,23 @@ test('a view\'s colour bands become its group\'s numbers, because the legend dra
     assert.deepEqual(breaksOf(), [20, 50]);
     group.breaks = [];
     assert.equal(breaksOf(), null);
+});
+
+test('a saved view shows the quantity, isolines and directions with which it was saved', () => {
+    const { session } = greeted('engineer'), [group] = session.model.groups;
+    group.isolines = [50];
+    for (const show of ['blind', 'uncertainty', 'value']) {
+        session.setParams({ group: group.id, show, isolines: [], arrows: 'none' });
+        const text = textOf(session);
+        session.setParams({ show: 'operator', isolines: [20], arrows: 'strokes' });
+        const { params } = viewOf(session, text);
+        assert.deepEqual([params.show, params.isolines, params.arrows], [show, [], 'none']);
+    }
+    const { params } = viewOf(session, `group=${group.id}`);
+    assert.deepEqual([params.show, params.isolines, params.arrows], ['value', [50], 'arrows']);
+    assert.deepEqual(viewOf(session, 'show=blind').params.isolines, [], 'the isolines of the group are values');
+    session.model.plant.show = 'operator';
+    assert.equal(viewOf(session, 'look=flat').params.show, 'operator', 'the initial quantity of the plant');
 });
 
 test('a viewer takes the parameters of the field from the saved view', () => {

@@ -316,8 +316,18 @@ test('a view with every parameter is read back from the address unchanged', () =
     const own = { hidden: ['ROOF'], isolate: [], ghost: ['HALL'] };
     assert.equal(writeAddress({ params: own, own }), '', 'the plant\'s own start is not in the address');
     assert.equal(writeAddress({ params: { ...own, hidden: [] }, own }), '#hide=');
+    assert.equal(writeAddress({ params: { isolines: [] }, own: { isolines: [50] } }), '#isolines=none');
+    assert.deepEqual(readAddress('#isolines=none').params, { isolines: [] });
     assert.deepEqual(readAddress('#hide=&ghost=A,B').params, { hidden: [], ghost: ['A', 'B'] });
     assert.deepEqual(readAddress(writeAddress({ params: { look: 'flat', split: { look: 'flat' } } })).params, { look: 'flat', split: {} });
+});
+
+test('each quantity and each look of the directions is read back from the address', () => {
+    for (const show of ['value', 'operator', 'distance', 'uncertainty', 'blind'])
+        assert.deepEqual(readAddress(writeAddress({ params: { show } })).params, { show });
+    for (const arrows of ['strokes', 'none'])
+        assert.deepEqual(readAddress(writeAddress({ params: { arrows } })).params, { arrows });
+    assert.equal(writeAddress({ params: { arrows: 'arrows' } }), '', 'the default is left out');
 });
 
 test('a snapshot request has the parameters of the view', () => {

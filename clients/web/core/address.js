@@ -13,7 +13,8 @@ const CHOICES = {
     look : [ 'default', 'glossy', 'flat', 'materials' ],
     fill : [ 'none', 'neighbours' ],
     scale : [ 'linear', 'log' ],
-    show : [ 'value', 'operator', 'distance' ],
+    show : [ 'value', 'operator', 'distance', 'uncertainty', 'blind' ], // writeAddress() and readAddress() check 'difference'
+    arrows : [ 'strokes', 'none' ], // without 'arrows', the default
     sensor : null,
     environment : null,
 };
@@ -44,6 +45,8 @@ export function writeAddress({ camera, params: all = {}, tag = null, time = null
     for (const name of Object.keys(LISTS)) {
         if (params[name]?.length > 0 && differs(name))
             put(name, listText(name, params[name]));
+        else if (name === 'isolines' && params[name]?.length === 0 && own[name]?.length > 0)
+            put(name, 'none');
     }
     for (const [name, usual] of Object.entries(FACTORS)) {
         const value = params[PARAMS[name] ?? name];
@@ -117,6 +120,8 @@ export function readAddress(hash) {
         if (list && (name !== 'light' || list.some((n) => n !== 0)) && (name !== 'range' || list[0] < list[1]))
             params[name] = list;
     }
+    if (fields.get('isolines') === 'none')
+        params.isolines = [];
     for (const name of Object.keys(FACTORS)) {
         const [value] = readNumbers(fields.get(name), 1) ?? [-1];
         if (value >= 0)

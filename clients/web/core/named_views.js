@@ -16,8 +16,11 @@ export const textOf = (session, tag = null) => {
 // the engineer-only parameters, which the server then takes from the saved view.
 export function viewOf(session, text, id) {
     const { camera, params, tag } = readAddress(text), group = session.model.group(params.group) ?? session.group;
-    const plain = { ...session.ownOf(group), range: null, ramp_interval: 0, breaks: group.breaks?.length ? group.breaks : null,
-        split: null, selected: null, clip: null, sensors: null };
+    const show = params.show ?? session.model.plant.show ?? 'value';
+    const plain = { ...session.ownOf(group), show, arrows: 'arrows', range: null, ramp_interval: 0,
+        breaks: group.breaks?.length ? group.breaks : null, split: null, selected: null, clip: null, sensors: null };
+    if (show !== 'value') // the group's isolines are values
+        plain.isolines = [];
     const all = { ...plain, ...params }, isEngineer = session.role === 'engineer';
     const sent = isEngineer ? all : { ...withoutEngineers(all), ...(id ? { named: id } : {}) };
     const { width, height, pixel_ratio: ratio = 1 } = session.size;
