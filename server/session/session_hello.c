@@ -196,10 +196,11 @@ bool session_hello(struct session *session, const struct message *message, int64
     session->view = view;
     if (message->hello.has_params && !session->identity.holder.views[0])
         session_record_params(session, message);
-    if (message->time.has_at && !narrowed)
-        session_time_begin(session, message->time.at_us, message->time.speed);
+    /* without a history, session_time_begin() replies that the session shows the present */
+    if (message->time.has_at && (!narrowed || !context->services->snapshot_cache))
+        session_time_begin(session, message->time.at_us, message->time.speed, now_utc_ns);
     else if (before && !narrowed)
-        session_time_begin(session, resumed.view.at_us, resumed.speed);
+        session_time_begin(session, resumed.view.at_us, resumed.speed, now_utc_ns);
     session->identity.tokens = message->hello.tokens;
     session->asks_depth = message->hello.depth;
     session->identity.resumed = session->identity.returned = back;

@@ -137,8 +137,9 @@ void session_keep_pixels(struct session *session, int64_t now_ns);
 /* Acts on the message `time`: goes to an instant, plays, or returns to the present. Returns false with *error if that is not possible. */
 bool session_on_time(struct session *session, const struct time_request *request, int64_t now_ns, int64_t now_utc_ns,
                      struct message_error *error);
-/* Makes a new session start at an instant of the past. */
-void session_time_begin(struct session *session, int64_t at_us, double speed);
+/* Makes a new session start at an instant of the past. at_us 0 or in the future: does nothing. If no history is
+   recorded, only replies with an error. */
+void session_time_begin(struct session *session, int64_t at_us, double speed, int64_t now_utc_ns);
 /* Releases the recorded readings of the past instant that the session shows. */
 void session_time_end(struct session *session);
 /* Returns to the present immediately, even while an instant is being loaded. */

@@ -202,6 +202,24 @@ CASE(test_what_cannot_be_read_is_said_and_changes_nothing)
     f->services.snapshot_cache = snapshot_cache;
 }
 
+CASE(test_without_a_history_a_past_time_in_hello_is_refused)
+{
+    struct snapshot_cache *snapshot_cache = f->services.snapshot_cache;
+    f->services.snapshot_cache = NULL;
+    say(f, test_printf(HELLO, ",\"at_us\":1793499940000000"));
+    expect_error(f, "no_history");
+    assert_true(f->session->hello && f->session->view.at_us == 0 && isnan(wanted(f)));
+    f->services.snapshot_cache = snapshot_cache;
+}
+
+CASE(test_hello_with_a_time_in_the_future_begins_in_the_present)
+{
+    say(f, test_printf(HELLO, ",\"at_us\":1893500000000000"));
+    json_t *time = hear(f, "time");
+    assert_non_null(time);
+    assert_true(json_is_null(json_object_get(time, "at_us")) && isnan(wanted(f)));
+}
+
 CASE(test_the_newest_seconds_are_the_present)
 {
     greet(f, "");

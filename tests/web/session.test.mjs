@@ -864,6 +864,20 @@ test('in the past the session\'s clock is separate, ages stand still, and a new 
     assert.equal(sockets.length, 1);
 });
 
+test('a server that records no history shows the present, whatever instant the address has', () => {
+    const { session, socket, clock, events } = greeted({ camera: null, params: {}, time: { atUs: 1793491200250000 } });
+    let heard = 0;
+    session.on('time', () => { heard++; });
+    socket.say({ type: 'status', links: [], time_us: 1793500000000000, live: true });
+    assert.equal(socket.sent[0].at_us, 1793491200250000);
+    assert.equal(health(session, clock.now()).kind, 'past');
+    const error = { type: 'error', about: 'time', code: 'no_history', text: 'no history', refusal: { code: 'unrecorded', args: {} } };
+    socket.say(error);
+    assert.deepEqual([session.time.atUs, Boolean(session.recorded), session.model.stopped, heard], [null, false, false, 1]);
+    assert.equal(health(session, clock.now()).kind, 'live');
+    assert.deepEqual(events.at(-1), ['error', error], 'the user gets the reason');
+});
+
 test('back in the present, the picture is marked as past until its first present picture', () => {
     const { session, socket, clock } = greeted();
     socket.say({ type: 'status', links: [], time_us: 1793500000000000, live: true });

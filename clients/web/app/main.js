@@ -120,7 +120,7 @@ session.on('alarms', async () => {
         (await modules.get('announcer')).take(raised);
 });
 session.on('time', () => {
-    byId('time-toggle').hidden = false;
+    byId('time-toggle').hidden = !session.recorded;
     if (session.time.atUs !== null)
         modules.get('timeline');
     saveAddress();

@@ -651,6 +651,12 @@ const HANDLERS = {
             this.emit('following');
             return;
         }
+        // a server that records no history shows the present, and never sends the message `time`
+        if (message.about === 'time' && message.refusal?.code === 'unrecorded') {
+            Object.assign(this, { time: { ...NOW }, recorded: false });
+            this.model.stop(false);
+            this.emit('time');
+        }
         if (message.about === 'params' && this.confirmed) {
             this.params = this.confirmed;
             this.asked.clear();

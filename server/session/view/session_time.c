@@ -56,9 +56,22 @@ static void play(struct session *session, double speed, int64_t from_us, int64_t
     session->owed.time = true;
 }
 
-void session_time_begin(struct session *session, int64_t at_us, double speed)
+static void refuse(struct session *session, enum refusal_code why)
 {
-    if (at_us == 0 || !session->context->services->snapshot_cache)
+    struct message_error error = { .about = "time" };
+    message_refuse(&error, "no_history", NULL, why);
+    session_reply_error(session, &error);
+}
+
+void session_time_begin(struct session *session, int64_t at_us, double speed, int64_t now_utc_ns)
+{
+    if (at_us == 0)
+        return;
+    if (!session->context->services->snapshot_cache) {
+        refuse(session, REFUSAL_UNRECORDED);
+        return;
+    }
+    if (at_us > now_utc_ns / 1000)
         return;
     session->travel.first = true;
     session->travel.speed = speed;
@@ -154,9 +167,7 @@ bool session_wants_historical_snapshot(struct session *session, int64_t now_ns, 
 
 static void on_failure(struct session *session)
 {
-    struct message_error error = { .about = "time" };
-    message_refuse(&error, "no_history", NULL, REFUSAL_UNREADABLE);
-    session_reply_error(session, &error);
+    refuse(session, REFUSAL_UNREADABLE);
     session->travel.wanted_us = 0;
     session->travel.asked = session->travel.first = false;
     session->travel.speed = 0;

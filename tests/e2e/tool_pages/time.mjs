@@ -593,3 +593,16 @@ test('the time bar fits on a phone', options, async () => {
     await phone.close();
     assert.deepEqual(browser.errors, []);
 });
+
+test('without a recorded history, a page whose address has a past time shows the present as live', options, async (t) => {
+    const other = await TinyPlant.create();
+    t.after(() => other.destroy());
+    writeFileSync(other.file, `${readFileSync(other.file, 'utf8')}history: { record: no }\n`);
+    await other.start();
+    const live = await openPage(`http://127.0.0.1:${other.port}/#at=${new Date((BEGIN_S + 600) * 1000).toISOString()}`);
+    t.after(() => live.close());
+    await waitForPicture(live.page);
+    await waitForHealth(live.page, 'live');
+    await becomes(() => live.page.locator('#time-toggle').isHidden(), true);
+    await live.page.waitForFunction(() => !location.hash.includes('at='));
+});
