@@ -15,7 +15,7 @@ const options = { skip: why, timeout: 300000 };
 const WALLS = `
 views:
 - { id: whole, title: Whole unit, view: "group=temperature" }
-- { id: above, title: From above, view: "group=temperature&camera=0,-0.5,30,0,0,0,0,0,1,5" }
+- { id: above, title: From above, view: "group=temperature&show=blind&only=E-101&camera=0,-0.5,30,0,0,0,0,0,1,5" }
 - { id: gone, title: Pressures, view: "group=presure" }
 - { id: odd, title: One thing, view: "group=pressure&show_only=E-1" }
 - { id: since, title: Since noon, view: "group=temperature&show=difference&baseline=noon" }
@@ -110,6 +110,10 @@ test('an alarm appears in the pane meant for it, and disappears once acknowledge
     await page.waitForFunction(() => [...document.querySelectorAll('.pane.views')].some((pane) => !pane.classList.contains('coming') &&
         /PI-1/.test(pane.querySelector('h2').textContent) &&
         pane.querySelector('iframe').contentWindow.plantcast?.session.shown.group === 'pressure'));
+    assert.deepEqual(await page.evaluate(() => {
+        const { show, isolate } = document.querySelector('.pane.views.called iframe').contentWindow.plantcast.session.shown;
+        return [show, isolate];
+    }), ['value', []], 'the pane shows readings, and the equipment of the alarm');
     assert.equal(await page.evaluate(() => globalThis.mixed), 0, 'no view\'s name stands over the picture of another quantity or place');
     const [frame, badge] = await page.evaluate(() => {
         const pane = document.querySelector('.pane.views.called');

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { readAddress, writeAddress } from '../../clients/web/core/address.js';
-import { idFor, isEngineers, regained, textOf, viewOf } from '../../clients/web/core/named_views.js';
+import { idFor, isEngineers, newView, regained, textOf, viewOf } from '../../clients/web/core/named_views.js';
 import { makeSession, vector } from './fixtures.mjs';
 
 const welcome = vector('server/welcome.json');
@@ -52,6 +52,15 @@ test('a saved view shows the quantity, isolines and directions with which it was
     assert.deepEqual(viewOf(session, 'show=blind').params.isolines, [], 'the isolines of the group are values');
     session.model.plant.show = 'operator';
     assert.equal(viewOf(session, 'look=flat').params.show, 'operator', 'the initial quantity of the plant');
+});
+
+test('a new view of a group shows readings and all equipment, whatever was shown before', () => {
+    const { session } = greeted('viewer'), [, other] = session.model.groups;
+    session.setParams({ show: 'blind', isolate: ['E-101'], clip: { planes: [[0, 0, 1, 0]] }, split: {}, range: [1, 2] });
+    const { group, show, isolate, hidden, clip, split, range } = newView(session, other.id);
+    assert.deepEqual([group, show, isolate, hidden, clip, split, range],
+        [other.id, 'value', [], session.model.start.hidden, null, null, null]);
+    assert.equal(newView(session, null).group, undefined);
 });
 
 test('a viewer takes the parameters of the field from the saved view', () => {

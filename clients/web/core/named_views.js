@@ -27,6 +27,9 @@ export function viewOf(session, text, id) {
     return { camera: camera ?? session.homeIn(width / ratio, height / ratio), params: sent, tag };
 }
 
+// Returns the parameters of a new view of a sensor group. group null: the group that is shown.
+export const newView = (session, group) => viewOf(session, group ? `group=${encodeURIComponent(group)}` : '').params;
+
 // Returns true if a view has engineer-only parameters.
 export function isEngineers(text) {
     const { params } = readAddress(text);

@@ -6,6 +6,7 @@ import { isGone, isWaiting } from '../core/alarms.js';
 import { ageText, qualityText, unitText, valueText, zoneClock } from '../core/format.js';
 import { health } from '../core/health.js';
 import { quantityText } from '../core/model.js';
+import { newView } from '../core/named_views.js';
 import { refusalText } from '../core/refusals.js';
 import { say } from '../core/words.js';
 import { clock } from '../app/common/clock.js';
@@ -147,8 +148,8 @@ function ViewsPane(pane, context) {
 
     function showAlarm(page, alarm) {
         const tag = page.session.model.tag(alarm.tag.name);
-        // resets what a view sent by a user may have changed in this pane: a section that hides the alarm, another range of colours
-        page.session.setParams({ ...(tag.group ? { group: tag.group } : {}), clip: null, split: null, range: null });
+        // the parameters of a new view: those of the pane's view could hide the equipment, or not show readings
+        page.session.setParams(newView(page.session, tag.group));
         page.flyToTag(tag);
         setVariable(element, '--called', `var(--p${alarm.priority})`);
         due = null;

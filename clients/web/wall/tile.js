@@ -8,7 +8,7 @@ import { Connection } from '../core/connection.js';
 import { browserDecoding } from '../core/decoding.js';
 import { ageText, unitText, valueText } from '../core/format.js';
 import { quantityText } from '../core/model.js';
-import { viewOf } from '../core/named_views.js';
+import { newView, viewOf } from '../core/named_views.js';
 import { inForce, placeOf as placeOfNote } from '../core/notes.js';
 import { refusalText } from '../core/refusals.js';
 import { SPREAD_MS } from '../core/wall.js';
@@ -98,7 +98,8 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
             return;
         if (alarm) {
             const tag = session.model.tag(alarm.tag.name);
-            session.setParams({ ...(tag.group ? { group: tag.group } : {}), clip: null, split: null, range: null });
+            // the parameters of a new view: those of the pane's view could hide the equipment, or not show readings
+            session.setParams(newView(session, tag.group));
             session.post({ type: 'fit', seq: ++session.fitSeq, id: tag.name });
         } else if (order?.view || view) {
             look(order?.view || view.view, order?.view ? undefined : view.id);
