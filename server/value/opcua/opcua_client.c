@@ -296,6 +296,9 @@ struct opcua_client *opcua_client_create(const struct plant_source *source, int 
     client->numbers = mem_array(nodes->count, sizeof(*client->numbers));
     client->refused = mem_array(nodes->count, sizeof(*client->refused));
     client->no_filter = mem_array(nodes->count, sizeof(*client->no_filter));
+    client->refused_count = nodes->count;
+    for (size_t i = 0; i < nodes->count; i++)
+        client->refused[i] = true;
     if (!opcua_security_init(&client->security, &source->opcua, client->host, why))
         opcua_client_destroy(&client);
     return client;
@@ -311,9 +314,7 @@ void opcua_client_destroy(struct opcua_client **client_ptr)
     close_library(client);
     UA_EndpointDescription_clear(&client->endpoint);
     opcua_security_finish(&client->security);
-    for (size_t i = 0; i < client->namespace_count; i++)
-        mem_free(client->namespaces[i]);
-    mem_free(client->namespaces);
+    opcua_forget_namespaces(client);
     mem_free(client->numbers);
     mem_free(client->refused);
     mem_free(client->no_filter);

@@ -28,8 +28,8 @@ void opcua_client_destroy(struct opcua_client **client);
 /* Connects: finds an endpoint, checks its certificate, opens a session, all by the deadline. Returns 0; -ECANCELED if stop_fd became
  * readable; another negative code with the reason in `why`. */
 int opcua_client_connect(struct opcua_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200]);
-/* Subscribes to all nodes. A repeated call only requests the nodes that the server refused. Returns 0; -ECANCELED if stop_fd
-   became readable; another negative code with the reason in `why`. */
+/* Subscribes to all nodes. A repeated call only requests the nodes that the server refused; it also finds namespaces that the
+   server has added meanwhile. Returns 0; -ECANCELED if stop_fd became readable; another negative code with the reason in `why`. */
 int opcua_client_subscribe(struct opcua_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200]);
 /* Receives new values until the deadline. Returns 0; -ECANCELED if stop_fd became readable; another negative code with the reason in
    `why` when the session or the subscription has ended. */

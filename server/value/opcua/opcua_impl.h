@@ -57,8 +57,10 @@ int opcua_call(struct opcua_client *client, const struct opcua_exchange *exchang
 void opcua_call_begin(struct opcua_client *client, void *response, const UA_DataType *type);
 int opcua_call_end(struct opcua_client *client, UA_StatusCode sent, int stop_fd, int64_t deadline_mono_ns, char why[200]);
 void opcua_on_answer(UA_Client *library, void *client, UA_UInt32 id, void *response);
-/* Reads the namespace URIs of the server, and its limit on the number of items per request. Returns the codes of opcua_call(). */
+/* Reads the namespace URIs of the server, finds the namespaces of the nodes that the server has not accepted yet, and reads the
+   server's limit on the number of items per request. Returns the codes of opcua_call(). */
 int opcua_read_namespaces(struct opcua_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200]);
+void opcua_forget_namespaces(struct opcua_client *client); /* frees the list of namespace URIs */
 /* Writes an explanation of a status code into `why`, with the last error that open62541 logged. */
 void opcua_explain(const struct opcua_client *client, UA_StatusCode status, char why[200]);
 

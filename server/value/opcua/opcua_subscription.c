@@ -16,11 +16,21 @@ static const UA_StatusCode NO_SUCH_NODE = 0x80340000; /* Bad_NodeIdUnknown */
 
 /* --- namespaces ------------------------------------------------------------------------------------------------------------- */
 
+void opcua_forget_namespaces(struct opcua_client *client)
+{
+    for (size_t i = 0; i < client->namespace_count; i++)
+        mem_free(client->namespaces[i]);
+    mem_free(client->namespaces);
+    client->namespaces = NULL;
+    client->namespace_count = 0;
+}
+
 static void keep_namespaces(struct opcua_client *client, const UA_Variant *value)
 {
     const UA_String *uris = value->data;
     if (!UA_Variant_hasArrayType(value, &UA_TYPES[UA_TYPES_STRING]))
         return;
+    opcua_forget_namespaces(client);
     client->namespaces = mem_array(value->arrayLength, sizeof(*client->namespaces));
     for (size_t i = 0; i < value->arrayLength && i < NO_NAMESPACE; i++)
         client->namespaces[client->namespace_count++] = mem_printf("%.*s", (int)uris[i].length, (const char *)uris[i].data);
@@ -60,11 +70,10 @@ int opcua_read_namespaces(struct opcua_client *client, int stop_fd, int64_t dead
         client->max_reads = batch_limit(&response.results[1].value);
         client->max_items = batch_limit(&response.results[2].value);
     }
-    for (size_t i = 0; i < client->nodes->count; i++) {
-        client->numbers[i] = number_of(client, client->nodes->at[i].name_space);
-        client->refused[i] = true;
-    }
-    client->refused_count = client->nodes->count;
+    /* the index of an accepted node's namespace cannot change during a session */
+    for (size_t i = 0; i < client->nodes->count; i++)
+        if (client->refused[i])
+            client->numbers[i] = number_of(client, client->nodes->at[i].name_space);
     UA_ReadResponse_clear(&response);
     return status;
 }
@@ -248,10 +257,19 @@ static bool any_without_filter(const struct opcua_client *client)
     return false;
 }
 
+/* Returns true if the namespace of a node was not found on the server. */
+static bool lacks_namespace(const struct opcua_client *client)
+{
+    for (size_t i = 0; i < client->nodes->count; i++)
+        if (client->refused[i] && client->numbers[i] == NO_NAMESPACE)
+            return true;
+    return false;
+}
+
 int opcua_client_subscribe(struct opcua_client *client, int stop_fd, int64_t deadline_mono_ns, char why[200])
 {
     bool is_new = !client->max_items;
-    int status = is_new ? opcua_read_namespaces(client, stop_fd, deadline_mono_ns, why) : 0;
+    int status = is_new || lacks_namespace(client) ? opcua_read_namespaces(client, stop_fd, deadline_mono_ns, why) : 0;
     if (status == 0 && is_new)
         status = begin_subscription(client, stop_fd, deadline_mono_ns, why);
     if (status == 0)

@@ -9,7 +9,7 @@ import { join } from 'node:path';
 import { test } from 'node:test';
 import { shareOpcua } from './server.mjs';
 import { opcuaOptions } from '../support/opcua.mjs';
-import { promise } from '../support/promise.mjs';
+import { long, promise } from '../support/promise.mjs';
 import { PublishedPlant } from '../support/published_plant.mjs';
 import { sweep } from '../support/sweep.mjs';
 import { BIN, runProgram, sleep } from '../support/tiny_plant.mjs';
@@ -85,6 +85,17 @@ test('all tags are Bad when the server is gone; on return all are subscribed aga
     server.thaw();
     await until('TI-1', { ...good, value: 25 }, 60);
     await said(/no readings[^]*reading[^]*no readings[^]*reading/);
+});
+
+test('a node whose namespace the server adds later is read in the same session', { ...options, skip: options.skip || long }, async () => {
+    await server.restart({});
+    await plant.run(server.security(), [...ROWS, 'LATE,nsu=urn:test:late;s=Late,,,,,,,,,,,,,']);
+    await said(/refuses to read node nsu=urn:test:late;s=Late: BadNodeIdUnknown/);
+    await until('TI-1', { ...good, value: 20 });
+    await server.tell({ addLate: true });
+    await until('LATE', { ...good, value: 7 }, 60);
+    await until('TI-1', { ...good, value: 20 });
+    assert.equal(await plant.metric('connects_total{source="plc"}'), 1);
 });
 
 test('a lost notification is noticed, and all nodes are read', options, async () => {

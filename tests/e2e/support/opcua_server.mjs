@@ -87,6 +87,13 @@ function set({ name, value, status = 0, at }) {
         status ? coerceStatusCode(status) : StatusCodes.Good, at ? new Date(at) : undefined);
 }
 
+// Adds a namespace and a node in it while clients are connected.
+function addLate() {
+    const space = server.engine.addressSpace, late = space.registerNamespace('urn:test:late');
+    late.addVariable({ organizedBy: space.rootFolder.objects, browseName: 'Late', nodeId: 's=Late', dataType: 'Double',
+        minimumSamplingInterval: 50, value: { dataType: 'Double', value: 7 } });
+}
+
 // Loses the next notification of a subscription: skips its sequence number, which the client must notice.
 function lose() {
     const { prototype } = opcua.Subscription, send = prototype._publish_pending_notifications;
@@ -106,6 +113,8 @@ for await (const line of createInterface({ input: process.stdin })) {
             set({ name: `N${i}`, value: order.each + i });
     else if (order.lose)
         lose();
+    else if (order.addLate)
+        addLate();
     else if (order.set)
         set(order.set);
     else if (order.reset) {
