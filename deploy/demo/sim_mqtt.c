@@ -11,6 +11,7 @@
 
 #include "base/mem.h"
 #include "plant/sources/json_path.h"
+#include "plant/sources/mqtt_address.h"
 #include "sim_encode.h"
 #include "value/mqtt/mqtt_topics.h"
 
@@ -214,7 +215,7 @@ static json_t *json_of(const struct sim_mqtt *mqtt, const struct plant_mqtt *con
     for (size_t i = 0; i < topic->tag_count; i++) {
         const struct plant_tag *tag = &mqtt->plant->tags[topic->tags[i]];
         double value = sim_encode_raw(tag, sim_values_at(values, (size_t)topic->tags[i]));
-        const char *path = *tag->signal.path ? tag->signal.path : config->value ? config->value : "value";
+        const char *stated = mqtt_address_path(mqtt->plant, tag), *path = *stated ? stated : "value";
         put(&root, json_path_begin(path), isfinite(value) ? json_real(value) : json_null());
         if (config->time)
             put_stated(&root, config->time, path, json_integer(now_utc_ns / 1000000));

@@ -20,6 +20,7 @@
 #include "base/mem.h"
 #include "plant/parse/csv.h"
 #include "plant/plant_folder.h"
+#include "plant/sources/mqtt_address.h"
 
 const char *const loop_check_state_names[] = {
     [LOOP_CHECK_NONE] = "none", [LOOP_CHECK_PASSED] = "pass", [LOOP_CHECK_FAILED] = "fail", [LOOP_CHECK_CHANGED] = "changed"
@@ -42,7 +43,17 @@ struct loop_checks {
 
 /* --- fingerprint of a tag's configuration ----------------------------------------------------------------------------------- */
 
-uint64_t loop_check_fingerprint(const struct plant *plant, int index)
+/* Adds where the tag's source finds the value: like the address, but including what the source's keys `unit`, `topic` and `value`
+   contribute. */
+static void add_resolved_address(struct text *text, const struct plant *plant, const struct plant_tag *tag)
+{
+    const struct tag_signal *signal = &tag->signal;
+    text_add(text, "|%d|%s|%s|%d", plant_tag_modbus_unit(plant, tag), signal->topic ? signal->topic : "", mqtt_address_path(plant, tag),
+             signal->element);
+}
+
+/* resolved: false computes the hash that older versions recorded, which lacks the resolved address. */
+static uint64_t hash_settings(const struct plant *plant, int index, bool resolved)
 {
     const struct plant_tag *tag = &plant->tags[index];
     const struct tag_signal *signal = &tag->signal;
@@ -68,9 +79,29 @@ uint64_t loop_check_fingerprint(const struct plant *plant, int index)
         else
             text_add(&text, "|open %.17g", sentinel->number);
     }
+    if (resolved && tag->source >= 0)
+        add_resolved_address(&text, plant, tag);
     uint64_t hash = XXH3_64bits(text.at, text.length);
     text_finish(&text);
     return hash;
+}
+
+uint64_t loop_check_fingerprint(const struct plant *plant, int tag)
+{
+    return hash_settings(plant, tag, true);
+}
+
+/* Returns whether a recorded fingerprint belongs to the tag's present settings. */
+static bool is_current(const struct plant *plant, int tag, uint64_t fingerprint)
+{
+    return fingerprint == hash_settings(plant, tag, true) || fingerprint == hash_settings(plant, tag, false);
+}
+
+/* Stores the tag's present unit and fingerprint in a loop check. */
+static void stamp(const struct plant *plant, int tag, struct loop_check *check)
+{
+    snprintf(check->unit, sizeof(check->unit), "%s", plant->tags[tag].unit ? plant->tags[tag].unit : "");
+    check->fingerprint = loop_check_fingerprint(plant, tag);
 }
 
 /* --- the file ------------------------------------------------------------------------------------------------------------------ */
@@ -91,24 +122,23 @@ static void add_number(struct text *out, double number)
         text_add(out, ",");
 }
 
-static void add_row(struct text *out, const struct plant *plant, int index, const struct loop_check *check)
+static void add_row(struct text *out, const char *name, const struct loop_check *check)
 {
-    const struct plant_tag *tag = &plant->tags[index];
     char when[32] = "";
     time_t seconds = (time_t)(check->time_us / 1000000);
     struct tm utc;
     if (check->time_us > 0 && gmtime_r(&seconds, &utc))
         strftime(when, sizeof(when), "%Y-%m-%dT%H:%M:%SZ", &utc);
     text_add(out, "%s", when);
-    add_text(out, tag->name);
+    add_text(out, name);
     text_add(out, ",%s", loop_check_state_names[check->state]);
     add_number(out, check->value);
-    add_text(out, tag->unit ? tag->unit : "");
+    add_text(out, check->unit);
     add_number(out, check->expected);
     add_number(out, check->tolerance);
     add_text(out, check->who);
     add_text(out, check->remark);
-    text_add(out, ",%016" PRIx64 "\n", loop_check_fingerprint(plant, index));
+    text_add(out, ",%016" PRIx64 "\n", check->fingerprint);
 }
 
 static double number_of(const struct csv *csv, int column)
@@ -131,9 +161,9 @@ static void read_row(struct loop_checks *loop_checks, const struct csv *csv)
 {
     enum { TIME, NAME, RESULT, VALUE, UNIT, EXPECTED, TOLERANCE, BY, REMARK, FINGERPRINT };
     int tag = plant_find_tag(loop_checks->plant, text_cell_read(csv_text(csv, NAME)));
-    const char *fingerprint = csv_text(csv, FINGERPRINT), *result = csv_text(csv, RESULT);
+    const char *fingerprint_text = csv_text(csv, FINGERPRINT), *result = csv_text(csv, RESULT);
     bool passed = !strcmp(result, loop_check_state_names[LOOP_CHECK_PASSED]);
-    if (strlen(fingerprint) != 16 ||
+    if (strlen(fingerprint_text) != 16 ||
         /* skips an incomplete row, which remains if the daemon was interrupted while writing it */
         (!passed && strcmp(result, loop_check_state_names[LOOP_CHECK_FAILED]) != 0))
         return;
@@ -141,14 +171,17 @@ static void read_row(struct loop_checks *loop_checks, const struct csv *csv)
     if (tag < 0)
         return;
     struct loop_check *check = &loop_checks->at[tag];
-    bool same = strtoull(fingerprint, NULL, 16) == loop_check_fingerprint(loop_checks->plant, tag);
-    *check = (struct loop_check){ .state = !same    ? LOOP_CHECK_CHANGED
+    uint64_t fingerprint = strtoull(fingerprint_text, NULL, 16);
+    bool current = is_current(loop_checks->plant, tag, fingerprint);
+    *check = (struct loop_check){ .state = !current ? LOOP_CHECK_CHANGED
                                            : passed ? LOOP_CHECK_PASSED
                                                     : LOOP_CHECK_FAILED,
                                   .time_us = time_of(csv_text(csv, TIME)),
                                   .value = number_of(csv, VALUE),
                                   .expected = number_of(csv, EXPECTED),
-                                  .tolerance = number_of(csv, TOLERANCE) };
+                                  .tolerance = number_of(csv, TOLERANCE),
+                                  .fingerprint = fingerprint };
+    snprintf(check->unit, sizeof(check->unit), "%s", text_cell_read(csv_text(csv, UNIT)));
     snprintf(check->who, sizeof(check->who), "%s", text_cell_read(csv_text(csv, BY)));
     snprintf(check->remark, sizeof(check->remark), "%s", text_cell_read(csv_text(csv, REMARK)));
 }
@@ -220,6 +253,17 @@ struct row_job {
     struct loop_check check;
 };
 
+/* Ends the last line of the file, which is incomplete. If the line breaks off inside a quoted cell, closes the cell too, because the
+   newline would otherwise belong to it. Rows contain no newlines of their own (add_text()). */
+static bool end_line(FILE *file)
+{
+    bool quoted = false;
+    rewind(file);
+    for (int byte; (byte = fgetc(file)) != EOF;)
+        quoted = byte != '\n' && quoted != (byte == '"');
+    return !ferror(file) && fseek(file, 0, SEEK_END) == 0 && fputs(quoted ? "\"\n" : "\n", file) >= 0;
+}
+
 /* Appends a row to the file. If the file ends in an incomplete line, for example after a power failure, ends that line first.
    Creates the folder if needed, because the historian's thread, which also creates it, may not have run yet. */
 static int append(struct file_job *job)
@@ -235,7 +279,7 @@ static int append(struct file_job *job)
     if (size == 0)
         good = fputs(head, file) >= 0;
     else if (good && size > 0 && fseek(file, -1, SEEK_END) == 0 && fgetc(file) != '\n')
-        good = fseek(file, 0, SEEK_END) == 0 && fputc('\n', file) != EOF;
+        good = end_line(file);
     good = good && fwrite(row->at, 1, row->length, file) == row->length && fflush(file) == 0 && fsync(fileno(file)) == 0;
     int error = good ? 0 : -errno;
     /* removes an incomplete row after a write error, because the caller reports the check as not stored */
@@ -273,7 +317,8 @@ enum refusal_code loop_checks_add(struct loop_checks *loop_checks, int tag, cons
                              .path = mem_strdup(loop_checks->path),
                              .tag = tag,
                              .check = *check };
-    add_row(&own->row, loop_checks->plant, tag, check);
+    stamp(loop_checks->plant, tag, &own->check);
+    add_row(&own->row, loop_checks->plant->tags[tag].name, &own->check);
     return atomic_file_not_kept(file_writer_queue(loop_checks->writer, &own->job));
 }
 
@@ -308,7 +353,11 @@ uint64_t loop_checks_number_of(const struct loop_checks *loop_checks, int tag)
 void loop_checks_print(const struct loop_checks *loop_checks, struct text *out)
 {
     text_add(out, "%s", head);
-    for (size_t i = 0; i < loop_checks->plant->tag_count; i++)
+    for (size_t i = 0; i < loop_checks->plant->tag_count; i++) {
+        struct loop_check check = loop_checks->at[i];
+        if (check.state == LOOP_CHECK_NONE)
+            stamp(loop_checks->plant, (int)i, &check);
         if (loop_checks->plant->tags[i].source >= 0)
-            add_row(out, loop_checks->plant, (int)i, &loop_checks->at[i]);
+            add_row(out, loop_checks->plant->tags[i].name, &check);
+    }
 }

@@ -9,7 +9,7 @@
 #include "base/text/text.h"
 #include "plant/plant.h"
 
-enum { LOOP_CHECK_NAME_BYTES = 64, LOOP_CHECK_REMARK_BYTES = 160 };
+enum { LOOP_CHECK_NAME_BYTES = 64, LOOP_CHECK_REMARK_BYTES = 160, LOOP_CHECK_UNIT_BYTES = 64 };
 
 enum loop_check_state {
     LOOP_CHECK_NONE,
@@ -23,8 +23,11 @@ struct loop_check {
     enum loop_check_state state;
     int64_t time_us;                  /* time of the check, microseconds UTC */
     /* value: value that arrived as the tag's value; expected: value forced at the transmitter; tolerance: largest accepted
-       difference; in the tag's unit, NaN: none */
+       difference; in `unit`, NaN: none */
     double value, expected, tolerance;
+    /* the tag's unit, and loop_check_fingerprint(), at the time of the check; loop_checks_add() sets both */
+    char unit[LOOP_CHECK_UNIT_BYTES];
+    uint64_t fingerprint;
     char who[LOOP_CHECK_NAME_BYTES], remark[LOOP_CHECK_REMARK_BYTES];
 };
 
@@ -42,9 +45,8 @@ enum refusal_code loop_checks_add(struct loop_checks *loop_checks, int tag, cons
 /* Returns the newest loop check recorded for a tag. */
 const struct loop_check *loop_checks_of(const struct loop_checks *loop_checks, int tag);
 /* Returns true if any tag of the plant has been checked. From the first check on, all tags that have not passed are marked as unproven. */
-bool loop_checks_begun(
-    const struct loop_checks *loop_checks);
-/* returns a sequence number that increases with each recorded loop check */
+bool loop_checks_begun(const struct loop_checks *loop_checks);
+/* Returns a sequence number that increases with each recorded loop check. */
 uint64_t loop_checks_number(const struct loop_checks *loop_checks);
 /* Returns the sequence number of the tag's newest loop check; 0: it was recorded before the daemon started. */
 uint64_t loop_checks_number_of(const struct loop_checks *loop_checks, int tag);
@@ -53,8 +55,8 @@ void loop_checks_print(const struct loop_checks *loop_checks, struct text *out);
 /* Returns true if pictures must mark the tag as unproven: at least one tag has been checked, but this one has not passed.
    Derived tags are never marked. Call from any thread. */
 bool loop_checks_unproven(const struct loop_checks *loop_checks, int tag);
-/* Returns a hash of all settings whose change invalidates a tag's loop check: source, address, type, byte order, scaling, NE 43,
-   values that mean an open circuit, asset and position. */
+/* Returns a hash of all settings whose change invalidates a tag's loop check: source, address (with what the source's settings
+   contribute, such as its Modbus unit), type, byte order, scaling, NE 43, values that mean an open circuit, asset and position. */
 uint64_t loop_check_fingerprint(const struct plant *plant, int tag);
 
 #endif

@@ -9,6 +9,7 @@
 
 #include "base/mem.h"
 #include "plant/plant_impl.h"
+#include "plant/sources/mqtt_address.h"
 #include "plant/tags/expression.h"
 
 static void __attribute__((format(printf, 2, 3))) say(struct plant_diff *diff, const char *fmt, ...)
@@ -102,14 +103,19 @@ static int modbus_unit_of(const struct plant *plant, const struct plant_tag *tag
     return tag->source < 0 ? -1 : plant_tag_modbus_unit(plant, tag);
 }
 
+static const char *path_of(const struct plant *plant, const struct plant_tag *tag)
+{
+    return tag->source < 0 ? "" : mqtt_address_path(plant, tag);
+}
+
 /* Returns whether two tags read the same address of their source. Compares the parsed members too, because they also depend on the
-   source's keys, such as `address_base` and `topic`. */
+   source's keys, such as `address_base`, `topic` and `value`. */
 static bool same_address(const struct plant *before, const struct plant_tag *a, const struct plant *after, const struct plant_tag *b)
 {
     const struct tag_signal *x = &a->signal, *y = &b->signal;
-    return same_text(x->address, y->address) && same_text(x->topic, y->topic) && same_text(x->path, y->path) && x->element == y->element &&
-           modbus_unit_of(before, a) == modbus_unit_of(after, b) && x->table == y->table && x->register_index == y->register_index &&
-           x->bit == y->bit && x->type == y->type && x->byte_order == y->byte_order;
+    return same_text(x->address, y->address) && same_text(x->topic, y->topic) && same_text(path_of(before, a), path_of(after, b)) &&
+           x->element == y->element && modbus_unit_of(before, a) == modbus_unit_of(after, b) && x->table == y->table &&
+           x->register_index == y->register_index && x->bit == y->bit && x->type == y->type && x->byte_order == y->byte_order;
 }
 
 static bool same_unit(const struct plant_tag *a, const struct plant_tag *b)

@@ -4,6 +4,7 @@
 #include "loopcheck/loop_checks.h"
 
 #include "tests/support/test.h"
+#include <inttypes.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -93,10 +94,12 @@ TEST_WITH(test_a_tag_that_is_another_is_unproven_again, set_up, tear_down)
 {
     struct loop_checks_fixture *f = *state;
     struct plant_tag *tag = &f->plant->tags[0], was = *tag;
+    struct plant_source *source = &f->plant->sources[0], source_was = *source;
     assert_int_equal(loop_checks_add(f->loop_checks, 0, &passed), REFUSAL_NONE);
     uint64_t before = loop_check_fingerprint(f->plant, 0);
-    for (int change = 0; change < 9; change++) {
+    for (int change = 0; change < 13; change++) {
         *tag = was;
+        *source = source_was;
         switch (change) {
         case 0: tag->signal.register_index++; break;
         case 1: tag->signal.byte_order = (enum byte_order)(tag->signal.byte_order + 1); break;
@@ -106,7 +109,11 @@ TEST_WITH(test_a_tag_that_is_another_is_unproven_again, set_up, tear_down)
         case 5: tag->scale.ne43 = !tag->scale.ne43; break;
         case 6: tag->scale.sentinels[tag->scale.sentinel_count++] = (struct plant_sentinel){ .number = -999.9 }; break;
         case 7: tag->scale.sentinels[tag->scale.sentinel_count++] = (struct plant_sentinel){ .is_bits = true, .bits = 0x8000 }; break;
-        default: tag->signal.modbus_unit++; break;
+        case 8: tag->signal.modbus_unit += 3; break;
+        case 9: source->unit++; break;
+        case 10: tag->signal.topic = test_printf("works/boiler"); break;
+        case 11: source->mqtt.value = test_printf("readings.value"); break;
+        default: tag->signal.element++; break;
         }
         assert_true(loop_check_fingerprint(f->plant, 0) != before);
         open_again(f);
@@ -114,6 +121,7 @@ TEST_WITH(test_a_tag_that_is_another_is_unproven_again, set_up, tear_down)
         assert_true(loop_checks_unproven(f->loop_checks, 0));
     }
     *tag = was;
+    *source = source_was;
     /* a tag's strength (its weight in the field) does not change what the tag measures, so the loop check stays valid */
     tag->strength = 3;
     open_again(f);
@@ -129,11 +137,25 @@ static char *read_file(const struct loop_checks_fixture *f)
     return text;
 }
 
+/* Older versions recorded a fingerprint without the resolved address. Their loop checks stay valid after an upgrade. */
+TEST_WITH(test_a_check_of_an_older_version_stays_valid, set_up, tear_down)
+{
+    struct loop_checks_fixture *f = *state;
+    temp_write_text(f->folder, LOOP_CHECKS_FILE,
+                    "Time,Tag Name,Result,Value,Unit,Expected,Tolerance,By,Remark,Fingerprint\n"
+                    "2023-11-14T22:13:20Z,\"TI-1\",pass,42,\"\",42.3,0.5,\"Kim\",\"\",c6463d05fd27624e\n");
+    open_again(f);
+    expect_unproven(f, false, true);
+    f->plant->tags[0].signal.register_index++;
+    open_again(f);
+    expect_unproven(f, true, true);
+}
+
 TEST_WITH(test_a_line_that_was_cut_off_spoils_no_other, set_up, tear_down)
 {
     struct loop_checks_fixture *f = *state;
     assert_int_equal(loop_checks_add(f->loop_checks, 0, &passed), REFUSAL_NONE);
-    char *path = temp_path(f->folder, LOOP_CHECKS_FILE), *whole = test_memory(read_file(f));
+    char *whole = test_memory(read_file(f));
     size_t length = strlen(whole);
     assert_int_equal(loop_checks_add(f->loop_checks, 1, &passed), REFUSAL_NONE);
     char *both = test_memory(read_file(f));
@@ -141,7 +163,7 @@ TEST_WITH(test_a_line_that_was_cut_off_spoils_no_other, set_up, tear_down)
     /* truncates the file within its second line, at every byte: the check of the first line must stay valid, and a new one can
        be added */
     for (size_t cut = length; cut < end - 1; cut++) {
-        assert_int_equal(truncate(path, (off_t)cut), 0);
+        temp_write(f->folder, LOOP_CHECKS_FILE, both, cut);
         open_again(f);
         assert_int_equal(loop_checks_of(f->loop_checks, 0)->state, LOOP_CHECK_PASSED);
         assert_int_equal(loop_checks_of(f->loop_checks, 1)->state, LOOP_CHECK_NONE);
@@ -187,4 +209,23 @@ TEST_ON(struct loop_checks_fixture *f, test_all_tags_with_a_source_are_told, set
                                      "\"Kim, \"\"field\"\"\",\"calibrator 7 line 2\","));
     assert_non_null(strstr(text->at, "\n,\"TI-2\",none,,\"\",,,\"\",\"\","));
     assert_null(strstr(text->at, "SUM"));
+}
+
+/* The values of a check are in the unit that the tag had then, and the fingerprint is that of the settings that were checked. */
+TEST_ON(struct loop_checks_fixture *f, test_a_check_keeps_its_unit_and_fingerprint, set_up, tear_down)
+{
+    struct plant_tag *tag = &f->plant->tags[0];
+    tag->unit = mem_strdup("bar");
+    assert_int_equal(loop_checks_add(f->loop_checks, 0, &passed), REFUSAL_NONE);
+    char *fingerprint = test_printf(",%016" PRIx64 "\n", loop_check_fingerprint(f->plant, 0));
+    mem_free(tag->unit);
+    tag->unit = mem_strdup("kPa");
+    tag->signal.register_index++;
+    for (int again = 0; again < 2; again++) {
+        struct text *text = test_text();
+        loop_checks_print(f->loop_checks, text);
+        assert_non_null(strstr(text->at, ",42,\"bar\",42.3,0.5,"));
+        assert_non_null(strstr(text->at, fingerprint));
+        open_again(f);
+    }
 }

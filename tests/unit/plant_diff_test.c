@@ -88,6 +88,21 @@ CASE(a_changed_meaning_of_addresses_is_said)
     assert_diff(c, before, sentinel, (const char *const[]){ "tag A changed: scaling" }, 1);
 }
 
+/* The key `value` of an MQTT source is the path of the tags whose address states none. */
+CASE(a_changed_path_of_the_source_is_said)
+{
+    static const char yaml[] = "plant: { name: P }\nassets:\n  - { id: E-101, model: m.glb }\ngroups:\n" TEMP
+                               "sources:\n  - { id: mq, type: mqtt, host: h, payload: json, value: %s }\ntags: tags.csv\n";
+    static const char tags[] = "Tag Name,Address,Eng Units\nA,a/b,bar\nB,a/b#other,bar\n";
+    char *first = test_printf(yaml, "now"), *second = test_printf(yaml, "later");
+    struct plant *before = load(c, first, tags), *after = load(c, second, tags);
+    assert_diff(c, before, after, (const char *const[]){ "tag A changed: address" }, 1);
+    bool kept[2];
+    plant_kept_signals(before, after, kept);
+    assert_false(kept[0]);
+    assert_true(kept[1]);
+}
+
 CASE(the_same_files_have_the_same_hash)
 {
     struct plant *one = load(c, YAML(TEMP, ""), TAGS "A,40001,bar,90\n"), *two = load(c, YAML(TEMP, ""), TAGS "A,40001,bar,90\n");

@@ -113,3 +113,9 @@ bool mqtt_address_resolve(const struct plant *plant, struct plant_tag *tag, char
     mem_free(address);
     return good;
 }
+
+const char *mqtt_address_path(const struct plant *plant, const struct plant_tag *tag)
+{
+    const char *own = tag->signal.path, *common = plant->sources[tag->source].mqtt.value;
+    return own && *own ? own : common ? common : "";
+}

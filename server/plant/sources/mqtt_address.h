@@ -14,5 +14,8 @@ bool mqtt_template_check(const char *text, char why[200]);
 /* Sets tag->topic and tag->path from the tag's address and the topic template of its source; name, address, source, group and asset of the
    tag must be set. Returns false on errors, with the expected form in `why`. */
 bool mqtt_address_resolve(const struct plant *plant, struct plant_tag *tag, char why[200]);
+/* Returns the path at which a tag that has a source finds its value (struct tag_signal): the tag's own, else its source's key `value`; "":
+   there is none. */
+const char *mqtt_address_path(const struct plant *plant, const struct plant_tag *tag);
 
 #endif

@@ -4,6 +4,7 @@
 #include <stdio.h>
 
 #include "base/clock.h"
+#include "plant/sources/mqtt_address.h"
 #include "value/mqtt/mqtt_impl.h"
 #include "value/quality.h"
 
@@ -95,7 +96,7 @@ static bool take_json(struct mqtt_source *mqtt, const struct mqtt_topic *topic, 
         struct stamped_value value;
         int tag = topic->tags[i];
         const struct plant_tag *of = &mqtt->base.plant->tags[tag];
-        const struct mqtt_reader reader = { config, *of->signal.path ? of->signal.path : config->value ? config->value : "", of->name };
+        const struct mqtt_reader reader = { config, mqtt_address_path(mqtt->base.plant, of), of->name };
         enum mqtt_found found = mqtt_json_read(root, &reader, &value, why);
         if (found == MQTT_FOUND)
             stamped_writer_add(&mqtt->writer, tag, &value, message->is_retained || (!mqtt->subscribed && !value.utc_ns), false);
