@@ -164,21 +164,21 @@ void plant_runtime_open_lists(struct plant_runtime *runtime)
     runtime->services.short_links = short_links_open(context->log, runtime->services.history_folder, context->file_writer);
     runtime->services.wall_remote = wall_remote_open(context->log, runtime->plant, runtime->services.history_folder, context->file_writer);
     runtime->services.pairings = pairings_open(context->log, runtime->services.history_folder, context->file_writer);
+    if (runtime->services.history_folder)
+        runtime->services.loop_checks =
+            loop_checks_open(context->log, runtime->plant, runtime->services.history_folder, context->file_writer);
+    if (runtime->services.render_service)
+        render_service_set_loop_checks(runtime->services.render_service, runtime->services.loop_checks);
 }
 
 bool plant_runtime_start_recording(struct plant_runtime *runtime, struct plant_runtime *before)
 {
     if (before)
         store_adopt(runtime->services.store, before->services.store);
-    /* opens the lists of views, notes and so on only at the daemon's start. During a reload, sessions of the old runtime may
-       still change these files, so the event loop opens the lists later, when it switches to this runtime */
+    /* opens the lists of views, notes, loop checks and so on only at the daemon's start. During a reload, sessions of the old
+       runtime may still change these files, so the event loop opens the lists later, when it switches to this runtime */
     if (!before)
         plant_runtime_open_lists(runtime);
-    if (runtime->services.history_folder)
-        runtime->services.loop_checks =
-            loop_checks_open(runtime->context->log, runtime->plant, runtime->services.history_folder, runtime->context->file_writer);
-    if (runtime->services.render_service)
-        render_service_set_loop_checks(runtime->services.render_service, runtime->services.loop_checks);
     return start_historian(runtime, before) && start_alarm_service(runtime, before ? before->services.alarm_service : NULL) &&
            start_notifier(runtime) && start_publisher(runtime) && start_other_plants(runtime);
 }

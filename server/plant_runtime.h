@@ -51,8 +51,8 @@ struct plant_runtime *plant_runtime_read(const struct plant_runtime_context *con
    NULL; sets *runtime to NULL. */
 void plant_runtime_destroy(struct plant_runtime **runtime);
 
-/* Opens the files that users change: named views, notes, and messages from desks to walls. After a reload, call it in the event
-   loop at the switch to the new runtime: until then the old runtime changes these files. */
+/* Opens the files that users change: named views, notes, messages from desks to walls, loop checks and so on. After a reload,
+   call it in the event loop at the switch to the new runtime: until then the old runtime changes these files. */
 void plant_runtime_open_lists(struct plant_runtime *runtime);
 /* Starts historian and alarm service; without an earlier runtime, also opens the files that users change. before: the earlier
    runtime, from which history, alarms and readings continue; NULL: none. plant_runtime_hand_over() must have been called for

@@ -348,3 +348,21 @@ test('loop checks are exported, survive a restart of the daemon, and end when th
     assert.match(readFileSync(join(plant.folder, 'plant.history', 'proofs.csv'), 'utf8'), /,fa\n|"TI-1",fa\n[^\n]*"TI-9",pass/);
     engineer.close();
 });
+
+test('a loop check is kept that the daemon answers while a reload starts the changed plant', options, async () => {
+    const engineer = await enter(), post = () => fetch(`http://127.0.0.1:${plant.port}/api/v1/reload`, { method: 'POST' });
+    engineer.texts.length = 0;
+    appendFileSync(plant.file, '# changed\n');
+    const reload = post().then((answer) => answer.json());
+    let last;
+    // checks the loop again and again until the session is switched to the changed plant, which sends a new `welcome`
+    while (!engineer.texts.some(({ type }) => type === 'welcome')) {
+        const remark = `check ${seq}`, { kept } = await prove(engineer, 'TI-1', 42, { remark });
+        last = kept && !engineer.texts.some(({ type }) => type === 'welcome') ? remark : last;
+    }
+    assert.equal((await reload).reloaded, true);
+    const csv = await (await fetch(`http://127.0.0.1:${plant.port}/api/v1/proofs`)).text();
+    const found = Number(/"TI-1",.*"check (\d+)"/.exec(csv)?.[1]);
+    assert.ok(found >= Number(last.split(' ')[1]), `${found} < ${last}`);
+    engineer.close();
+});
