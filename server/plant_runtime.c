@@ -164,7 +164,7 @@ void plant_runtime_open_lists(struct plant_runtime *runtime)
     runtime->services.short_links = short_links_open(context->log, runtime->services.history_folder, context->file_writer);
     runtime->services.wall_remote = wall_remote_open(context->log, runtime->plant, runtime->services.history_folder, context->file_writer);
     runtime->services.pairings = pairings_open(context->log, runtime->services.history_folder, context->file_writer);
-    if (runtime->services.history_folder)
+    if (!runtime->plant->history.off)
         runtime->services.loop_checks =
             loop_checks_open(context->log, runtime->plant, runtime->services.history_folder, context->file_writer);
     if (runtime->services.render_service)

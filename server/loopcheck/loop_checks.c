@@ -186,11 +186,16 @@ static void read_row(struct loop_checks *loop_checks, const struct csv *csv)
     snprintf(check->remark, sizeof(check->remark), "%s", text_cell_read(csv_text(csv, REMARK)));
 }
 
+static void mark_tag(struct loop_checks *loop_checks, size_t tag)
+{
+    atomic_store(&loop_checks->unproven[tag],
+                 loop_checks->begun && loop_checks->plant->tags[tag].source >= 0 && loop_checks->at[tag].state != LOOP_CHECK_PASSED);
+}
+
 static void mark_unproven(struct loop_checks *loop_checks)
 {
     for (size_t i = 0; i < loop_checks->plant->tag_count; i++)
-        atomic_store(&loop_checks->unproven[i],
-                     loop_checks->begun && loop_checks->plant->tags[i].source >= 0 && loop_checks->at[i].state != LOOP_CHECK_PASSED);
+        mark_tag(loop_checks, i);
 }
 
 static void read_all(struct loop_checks *loop_checks)
@@ -207,20 +212,25 @@ static void read_all(struct loop_checks *loop_checks)
     diag_finish(&diag);
 }
 
+static void forget_all(struct loop_checks *loop_checks)
+{
+    for (size_t i = 0; i < loop_checks->plant->tag_count; i++)
+        loop_checks->at[i] = (struct loop_check){ .value = NAN, .expected = NAN, .tolerance = NAN };
+}
+
 struct loop_checks *loop_checks_open(struct log *log, const struct plant *plant, const char *folder, struct file_writer *writer)
 {
     struct loop_checks *loop_checks = mem_new(sizeof(*loop_checks));
     loop_checks->log = log;
     loop_checks->plant = plant;
     loop_checks->writer = writer;
-    loop_checks->folder = mem_strdup(folder);
-    loop_checks->path = mem_printf("%s/" LOOP_CHECKS_FILE, folder);
+    loop_checks->folder = folder ? mem_strdup(folder) : NULL;
+    loop_checks->path = folder ? mem_printf("%s/" LOOP_CHECKS_FILE, folder) : NULL;
     loop_checks->at = mem_array(plant->tag_count, sizeof(*loop_checks->at));
     loop_checks->numbers = mem_array(plant->tag_count, sizeof(*loop_checks->numbers));
-    for (size_t i = 0; i < plant->tag_count; i++)
-        loop_checks->at[i] = (struct loop_check){ .value = NAN, .expected = NAN, .tolerance = NAN };
+    forget_all(loop_checks);
     loop_checks->unproven = mem_array(plant->tag_count, sizeof(*loop_checks->unproven));
-    if (access(loop_checks->path, F_OK) == 0)
+    if (folder && access(loop_checks->path, F_OK) == 0)
         read_all(loop_checks);
     mark_unproven(loop_checks);
     return loop_checks;
@@ -322,8 +332,29 @@ enum refusal_code loop_checks_add(struct loop_checks *loop_checks, int tag, cons
     return atomic_file_not_kept(file_writer_queue(loop_checks->writer, &own->job));
 }
 
+void loop_checks_mirror(struct loop_checks *loop_checks, bool all, bool begun)
+{
+    if (all)
+        forget_all(loop_checks);
+    loop_checks->begun = begun;
+    loop_checks->number++;
+    mark_unproven(loop_checks);
+}
+
+void loop_checks_mirror_tag(struct loop_checks *loop_checks, int tag, const struct loop_check *check)
+{
+    loop_checks->at[tag] = *check;
+    loop_checks->numbers[tag] = loop_checks->number;
+    mark_tag(loop_checks, (size_t)tag);
+}
+
 /* --- queries
    ---------------------------------------------------------------------------------------------------------------------------- */
+
+bool loop_checks_recorded(const struct loop_checks *loop_checks)
+{
+    return loop_checks->folder;
+}
 
 const struct loop_check *loop_checks_of(const struct loop_checks *loop_checks, int tag)
 {

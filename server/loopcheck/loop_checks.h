@@ -34,14 +34,21 @@ struct loop_check {
 #define LOOP_CHECKS_FILE "proofs.csv"
 
 struct loop_checks;
-/* Reads the loop checks of a plant. A file that cannot be read counts as empty (logged). writer: the thread that writes checks
-   to disk; NULL: checks are written at once. Never returns NULL. plant and writer must outlive the result. */
+/* Reads the loop checks of a plant. A file that cannot be read counts as empty (logged). folder: the history folder; NULL: this
+   daemon draws for a core, and gets the core's checks from loop_checks_mirror(). writer: the thread that writes checks to disk; NULL:
+   checks are written at once. Never returns NULL. plant and writer must outlive the result. */
 struct loop_checks *loop_checks_open(struct log *log, const struct plant *plant, const char *folder, struct file_writer *writer);
 /* Frees the loop checks and sets *loop_checks to NULL; accepts a pointer to NULL. */
 void loop_checks_close(struct loop_checks **loop_checks);
 /* Queues a loop check for writing; once it is on disk, file_writer_collect() makes it the tag's newest check. Returns
    REFUSAL_NONE, or why it could not be queued. */
 enum refusal_code loop_checks_add(struct loop_checks *loop_checks, int tag, const struct loop_check *check);
+/* Returns true if this daemon records loop checks; false: it mirrors those of its core. */
+bool loop_checks_recorded(const struct loop_checks *loop_checks);
+/* Begins to store checks that the core has recorded. all: forgets the checks stored before. begun: loop_checks_begun() of the core. */
+void loop_checks_mirror(struct loop_checks *loop_checks, bool all, bool begun);
+/* Stores one of the core's checks, after loop_checks_mirror(). */
+void loop_checks_mirror_tag(struct loop_checks *loop_checks, int tag, const struct loop_check *check);
 /* Returns the newest loop check recorded for a tag. */
 const struct loop_check *loop_checks_of(const struct loop_checks *loop_checks, int tag);
 /* Returns true if any tag of the plant has been checked. From the first check on, all tags that have not passed are marked as unproven. */

@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "base/text/json_text.h"
 #include "message/json_fields.h"
@@ -59,7 +60,7 @@ char *loop_check_do(struct loop_checks *loop_checks, const struct plant *plant, 
     return json_text(answer, 9);
 }
 
-char *loop_checks_text(const struct loop_checks *loop_checks, const struct plant *plant, uint64_t since, bool all)
+json_t *loop_checks_message(const struct loop_checks *loop_checks, const struct plant *plant, uint64_t since, bool all)
 {
     json_t *list = json_array();
     for (size_t i = 0; i < plant->tag_count; i++) {
@@ -71,6 +72,50 @@ char *loop_checks_text(const struct loop_checks *loop_checks, const struct plant
                       number(check->expected), number(check->tolerance), json_string(check->who), json_string(check->remark));
         json_array_append_new(list, row ? row : json_array());
     }
-    return json_text(json_pack("{s:s,s:b,s:b,s:o}", "type", "proofs", "all", all, "begun", loop_checks_begun(loop_checks), "tags", list),
-                     9);
+    return json_pack("{s:s,s:b,s:b,s:o}", "type", "proofs", "all", all, "begun", loop_checks_begun(loop_checks), "tags", list);
+}
+
+char *loop_checks_text(const struct loop_checks *loop_checks, const struct plant *plant, uint64_t since, bool all)
+{
+    return json_text(loop_checks_message(loop_checks, plant, since, all), 9);
+}
+
+static double value_of(const json_t *value)
+{
+    return json_is_number(value) ? json_number_value(value) : NAN;
+}
+
+/* Reads a row of `proofs`. Returns the tag; -1: the row is invalid. */
+static int read_check(const json_t *row, size_t tag_count, struct loop_check *check)
+{
+    json_int_t tag, time_us;
+    const char *state, *who, *remark;
+    json_t *value, *expected, *tolerance;
+    if (json_unpack((json_t *)row, "[I,s,I,o,o,o,s,s]", &tag, &state, &time_us, &value, &expected, &tolerance, &who, &remark) != 0 ||
+        tag < 0 || (size_t)tag >= tag_count)
+        return -1;
+    *check = (struct loop_check){
+        .time_us = time_us, .value = value_of(value), .expected = value_of(expected), .tolerance = value_of(tolerance)
+    };
+    for (int i = LOOP_CHECK_PASSED; i <= LOOP_CHECK_CHANGED; i++)
+        if (!strcmp(state, loop_check_state_names[i]))
+            check->state = (enum loop_check_state)i;
+    snprintf(check->who, sizeof(check->who), "%s", who);
+    snprintf(check->remark, sizeof(check->remark), "%s", remark);
+    return check->state == LOOP_CHECK_NONE ? -1 : (int)tag;
+}
+
+bool loop_checks_take(struct loop_checks *loop_checks, const struct plant *plant, const json_t *message)
+{
+    const json_t *list = json_object_get(message, "tags");
+    bool good = json_is_array(list);
+    loop_checks_mirror(loop_checks, json_is_true(json_object_get(message, "all")), json_is_true(json_object_get(message, "begun")));
+    for (size_t i = 0; good && i < json_array_size(list); i++) {
+        struct loop_check check;
+        int tag = read_check(json_array_get(list, i), plant->tag_count, &check);
+        good = tag >= 0;
+        if (good)
+            loop_checks_mirror_tag(loop_checks, tag, &check);
+    }
+    return good;
 }

@@ -10,6 +10,7 @@
 #include "base/text/hex.h"
 #include "base/text/json_text.h"
 #include "corelink/core_identity.h"
+#include "message/loop_check_message.h"
 
 static bool hand_on(void *arg, const struct session *session, const char *text)
 {
@@ -40,6 +41,14 @@ static void take_key(struct server_context *server, const json_t *core)
         view_token_add_key(&server->core.token_keys, key);
 }
 
+/* Handles the core's loop checks; NULL: they have not changed. A standby core ignores them, because it has records of its own. */
+static bool take_loop_checks(const struct server_context *server, const json_t *proofs)
+{
+    struct loop_checks *loop_checks = server->params.plant.loop_checks;
+    return !proofs || !loop_checks || loop_checks_recorded(loop_checks) ||
+           loop_checks_take(loop_checks, server->session_context.plant, proofs);
+}
+
 static void take_lists(struct server_context *server, const json_t *lists)
 {
     const struct plant_services *plant = &server->params.plant;
@@ -48,10 +57,11 @@ static void take_lists(struct server_context *server, const json_t *lists)
         !wall_remote_mirror(plant->wall_remote, json_object_get(lists, "walls")) ||
         !wall_remote_mirror_pointers(plant->wall_remote, json_object_get(lists, "pointed")) ||
         !pairings_mirror(plant->pairings, json_object_get(lists, "pairings"), clock_mono_ns()) ||
-        (json_object_get(lists, "links") && !short_links_mirror(plant->short_links, json_object_get(lists, "links"))))
+        (json_object_get(lists, "links") && !short_links_mirror(plant->short_links, json_object_get(lists, "links"))) ||
+        !take_loop_checks(server, json_object_get(lists, "proofs")))
         log_err(server->params.log,
-                "core: the core sent an invalid list of views, notes, walls, devices or short links; this daemon ignores the rest of the "
-                "message");
+                "core: the core sent an invalid list of views, notes, walls, devices, short links or loop checks; this daemon ignores the "
+                "rest of the message");
     server->core.listed = true;
     streams_on_alarms(server);
 }

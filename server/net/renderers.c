@@ -16,6 +16,7 @@
 #include "corelink/core_identity.h"
 #include "corelink/core_readings.h"
 #include "corelink/core_samples.h"
+#include "message/loop_check_message.h"
 #include "message/names.h"
 #include "net/connection.h"
 #include "net/core_end.h"
@@ -26,7 +27,7 @@ enum { TICK_US = 200000, MAX_MESSAGE_BYTES = 256 * 1024 /* maximum size of one m
 static const int64_t MAX_READINGS_DELAY_NS = 500 * NS_PER_MS, STANDBY_TIMEOUT_NS = 2 * NS_PER_S;
 
 struct lists_seen {
-    uint64_t views, notes, walls, pointed, pairings, links;
+    uint64_t views, notes, walls, pointed, pairings, links, loop_checks;
 };
 
 struct deed {
@@ -448,9 +449,13 @@ static bool send_links(const struct server_context *server, struct renderer_peer
 static struct lists_seen lists_now(const struct server_context *server)
 {
     const struct plant_services *plant = &server->params.plant;
-    return (struct lists_seen){ named_views_number(plant->named_views), notes_number(plant->notes), wall_remote_number(plant->wall_remote),
-                                wall_remote_pointer_number(plant->wall_remote), pairings_number(plant->pairings),
-                                short_links_number(plant->short_links) };
+    return (struct lists_seen){ named_views_number(plant->named_views),
+                                notes_number(plant->notes),
+                                wall_remote_number(plant->wall_remote),
+                                wall_remote_pointer_number(plant->wall_remote),
+                                pairings_number(plant->pairings),
+                                short_links_number(plant->short_links),
+                                plant->loop_checks ? loop_checks_number(plant->loop_checks) : 0 };
 }
 
 static bool send_lists(const struct server_context *server, struct renderer_peer *renderer)
@@ -462,6 +467,10 @@ static bool send_lists(const struct server_context *server, struct renderer_peer
                                 json_loads(pointed, 0, NULL), "pairings", pairings_told(plant->pairings, clock_mono_ns()));
     if (!renderer->lists_sent || renderer->lists.links != short_links_number(plant->short_links))
         json_object_set(message, "links", short_links_list(plant->short_links));
+    if (plant->loop_checks && (!renderer->lists_sent || renderer->lists.loop_checks != loop_checks_number(plant->loop_checks)))
+        json_object_set_new(message, "proofs",
+                            loop_checks_message(plant->loop_checks, server->session_context.plant, renderer->lists.loop_checks,
+                                                !renderer->lists_sent));
     renderer->lists = lists_now(server);
     renderer->lists_sent = true;
     mem_free(pointed);

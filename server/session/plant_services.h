@@ -23,7 +23,7 @@ struct plant_services {
     struct core_link *core_link;
     struct historian *historian;     /* records history; NULL: nothing is recorded */
     struct notifier *notifier;       /* service that sends alarm notifications; NULL: none are sent */
-    struct loop_checks *loop_checks; /* results of loop checks; NULL: loops cannot be checked */
+    struct loop_checks *loop_checks; /* results of loop checks, on a renderer those of the core; NULL: the plant records no history */
     char *tag_list;                  /* text of the active tag list; NULL: it could not be read */
     char *history_folder;            /* folder of the recorded history; NULL: nothing is recorded */
 };

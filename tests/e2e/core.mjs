@@ -101,6 +101,29 @@ test('notes, views and short links of one renderer appear at the others', option
     anna.close();
 });
 
+test('a loop check at the core marks tags at the renderers, which make no checks themselves', options, async () => {
+    const engineer = await core.client(), viewer = await a.client({}, { token: nodes.tokens.viewer });
+    const { all: whole, begun, tags } = await viewer.text('proofs');
+    assert.deepEqual([whole, begun, tags], [true, false, []]);
+    const prove = { type: 'prove', seq: 1, tag: 'TI-2', expected: 20, tolerance: 0.5, remark: 'by hand' };
+    engineer.say({ ...prove, fail: true });
+    assert.equal((await engineer.text('proved')).kept, true);
+    const first = await viewer.text('proofs'), [[index, ...row]] = first.tags;
+    assert.deepEqual([first.begun, viewer.welcome.tags[index].name, row[0], ...row.slice(2)],
+        [true, 'TI-2', 'fail', 20, 20, 0.5, 'local', 'by hand']);
+    engineer.say({ ...prove, seq: 2 });
+    assert.equal((await viewer.text('proofs')).tags[0][1], 'pass');
+    const late = await nodes.renderer('later', core), newcomer = await late.client({}, { token: nodes.tokens.viewer });
+    await newcomer.until('the check', ({ texts }) => texts.some(({ type, begun, tags }) =>
+        type === 'proofs' && begun && tags.some(([, result]) => result === 'pass')));
+    const local = await a.client();
+    local.say({ ...prove, seq: 3 });
+    assert.equal((await local.text('error')).code, 'no_history');
+    for (const client of [engineer, viewer, newcomer, local])
+        client.close();
+    await late.stop();
+});
+
 test('when a core is killed, all readings are Bad within 3 s, actions are refused, and both recover with it', options, async (t) => {
     const client = await a.client({}, { token: nodes.tokens.operator });
     const { port } = core;
