@@ -475,6 +475,7 @@ CASE(lost_samples_leave_a_gap)
     struct history_series series;
     for (int i = 0; i < TAGS; i++)
         s->plant->tags[i].validity.stale_s = PLANT_NEVER_STALE_S;
+    s->store = test_store(s->plant); /* a store takes over the tags' stale times when it is created */
     start_with_limit(s, 8 * TAGS);
     for (int i = 0; i < 20; i++) {
         write_all(s, bent(i));
@@ -503,6 +504,7 @@ CASE(a_loss_begins_when_samples_are_lost)
     char *path = temp_write_text(s->folder, "history", "not a folder");
     for (int i = 0; i < TAGS; i++)
         s->plant->tags[i].validity.stale_s = PLANT_NEVER_STALE_S;
+    s->store = test_store(s->plant); /* a store takes over the tags' stale times when it is created */
     start_with_limit(s, 4 * TAGS);
     int64_t newest_ns = 0;
     for (int i = 0; i < 5; i++) {
@@ -540,6 +542,7 @@ CASE(a_loss_ends_with_the_daemon)
     assert_int_equal(getrlimit(RLIMIT_FSIZE, &unlimited), 0);
     for (int i = 0; i < TAGS; i++)
         s->plant->tags[i].validity.stale_s = PLANT_NEVER_STALE_S;
+    s->store = test_store(s->plant); /* a store takes over the tags' stale times when it is created */
     start_with_limit(s, 4 * TAGS);
     write_all(s, 1);
     sleep_ns(1300 * NS_PER_MS);
