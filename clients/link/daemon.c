@@ -4,12 +4,14 @@
 
 #include <errno.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/files/secret.h"
 #include "base/mem.h"
 
-enum { MAX_BODY_BYTES = 256 * 1024 * 1024, RECEIVE_BYTES = 16 * 1024 };
+/* SILENCE_S: maximum time in seconds between two parts of an answer */
+enum { MAX_BODY_BYTES = 256 * 1024 * 1024, RECEIVE_BYTES = 16 * 1024, SILENCE_S = 60 };
 
 /* Reads the access token from the first line of the --token-file. Returns false with the reason printed. */
 static bool read_token(struct daemon_access *access)
@@ -140,9 +142,36 @@ struct exchange {
     const struct daemon_access *access;
     int status;
     bool done;
+    long long length; /* length of the body in bytes, as the answer states it; -1: the answer states none */
     struct text *body;
+    size_t body_begin; /* number of bytes in `body` before the answer */
     char why[200];
 };
+
+static void await_more(struct lws *wsi)
+{
+    lws_set_timer_usecs(wsi, SILENCE_S * LWS_US_PER_SEC);
+}
+
+static void read_head(struct exchange *exchange, struct lws *wsi)
+{
+    char length[24] = "";
+    exchange->status = (int)lws_http_client_http_response(wsi);
+    exchange->length = lws_hdr_copy(wsi, length, sizeof(length), WSI_TOKEN_HTTP_CONTENT_LENGTH) > 0 ? strtoll(length, NULL, 10) : -1;
+    await_more(wsi);
+}
+
+/* Returns whether the body has the length that the answer states. An answer that states none, such as a chunked one, counts as whole. */
+static bool is_whole(const struct exchange *exchange)
+{
+    return exchange->length < 0 || exchange->body->length - exchange->body_begin == (size_t)exchange->length;
+}
+
+static int end_with(struct exchange *exchange, const char *why)
+{
+    snprintf(exchange->why, sizeof(exchange->why), "%s", why);
+    return -1;
+}
 
 static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t len)
 {
@@ -155,15 +184,17 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
         snprintf(exchange->why, sizeof(exchange->why), "%s", in ? (const char *)in : "no connection");
         exchange->done = true;
         break;
-    case LWS_CALLBACK_ESTABLISHED_CLIENT_HTTP: exchange->status = (int)lws_http_client_http_response(wsi); break;
+    case LWS_CALLBACK_ESTABLISHED_CLIENT_HTTP: read_head(exchange, wsi); break;
+    case LWS_CALLBACK_TIMER: return end_with(exchange, "the answer is incomplete: the server has stopped sending");
     /* lws_http_client_read() fills `buffer` with part of the response body and calls this function again with
        LWS_CALLBACK_RECEIVE_CLIENT_HTTP_READ */
     case LWS_CALLBACK_RECEIVE_CLIENT_HTTP:
         return lws_http_client_read(wsi, &at, &room) < 0 ? -1 : 0;
     case LWS_CALLBACK_RECEIVE_CLIENT_HTTP_READ:
         if (exchange->body->length + len > MAX_BODY_BYTES)
-            return -1;
+            return end_with(exchange, "the answer is too large");
         text_add_bytes(exchange->body, in, len);
+        await_more(wsi);
         break;
     case LWS_CALLBACK_COMPLETED_CLIENT_HTTP:
     case LWS_CALLBACK_CLOSED_CLIENT_HTTP: exchange->done = true; break;
@@ -175,7 +206,7 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
 int daemon_get(const struct daemon_url *url, const char *path, struct text *body)
 {
     static const struct lws_protocols protocols[] = { { .name = "http", .callback = on_event }, { 0 } };
-    struct exchange exchange = { .access = url->access, .body = body };
+    struct exchange exchange = { .access = url->access, .body = body, .body_begin = body->length };
     struct lws_context_creation_info info = {
         .port = CONTEXT_PORT_NO_LISTEN,
         .protocols = protocols,
@@ -199,6 +230,11 @@ int daemon_get(const struct daemon_url *url, const char *path, struct text *body
         exchange.done = true;
     while (!exchange.done)
         lws_service(context, 0);
+    if (exchange.status && (exchange.why[0] || !is_whole(&exchange))) {
+        if (!exchange.why[0])
+            end_with(&exchange, "the answer is incomplete: the connection ended too early");
+        exchange.status = 0;
+    }
     if (!exchange.status)
         fprintf(stderr, "plantcast: http%s://%s:%d%s: %s%s\n", url->tls ? "s" : "", url->host, url->port, whole,
                 exchange.why[0] ? exchange.why : "the server at this address does not answer",

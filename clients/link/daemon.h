@@ -31,7 +31,7 @@ char **daemon_command_line(const struct daemon_access *access, int argc, char **
    printed. */
 bool daemon_url_parse(const char *text, const struct daemon_access *access, struct daemon_url *url);
 /* Requests GET path and appends the body of the response to *body (zero-initialised; free with text_finish()). Returns the HTTP status,
-   or 0 with the reason printed if there was no answer. */
+   or 0 with the reason printed if there was no whole answer. */
 int daemon_get(const struct daemon_url *url, const char *path, struct text *body);
 
 /* Sets the TLS and CA options for this URL in the creation info of a libwebsockets client context. */

@@ -3,12 +3,14 @@
 // below a path.
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
+import { once } from 'node:events';
 import { appendFileSync, copyFileSync, existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { connect, createServer } from 'node:net';
 import { join } from 'node:path';
 import { after, afterEach, test } from 'node:test';
 import { makeCertificate } from './support/certificate.mjs';
 import { PlainClient } from './support/plain_client.mjs';
+import { long } from './support/promise.mjs';
 import { setUp } from './support/set_up.mjs';
 import { BIN, notBuilt, TinyPlant } from './support/tiny_plant.mjs';
 
@@ -132,6 +134,43 @@ test('snapshot --view accepts views of the plant file and of the page, by id or 
         await refused(url, /HTTP status 403: .*boxes/, '--view', 'pump', '--token-file', token('some'));
         await refused(url, /HTTP status 401/, '--view', 'pump');
     });
+
+// Serves one answer: `head`, then 2000 bytes of a picture. Then closes the connection, unless `stalls`.
+async function serveCutOff(head, stalls = false) {
+    const server = createServer((client) => {
+        client.on('error', () => {});
+        client.once('data', () => {
+            client.write(`HTTP/1.1 200 OK\r\nContent-Type: image/png\r\n${head}\r\n`);
+            client.write(Buffer.alloc(2000, 7), () => stalls || client.end());
+        });
+    }).listen(0, '127.0.0.1');
+    await once(server, 'listening');
+    return server;
+}
+
+async function saveCutOff(t, head, stalls) {
+    const server = await serveCutOff(head, stalls), png = join(plant.folder, 'cut.png');
+    t.after(() => server.close());
+    writeFileSync(png, 'the old picture');
+    const { code, err } = await run('snapshot', `http://127.0.0.1:${server.address().port}/`, '-o', png);
+    return { code, err, saved: readFileSync(png) };
+}
+
+test('snapshot leaves the old file if the answer is cut off; it accepts one that ends with the connection', { skip, timeout: 100000 },
+    async (t) => {
+        const cut = await saveCutOff(t, 'Content-Length: 5000\r\n');
+        assert.equal(cut.code, 1);
+        assert.match(cut.err, /the answer is incomplete/);
+        assert.equal(String(cut.saved), 'the old picture');
+        const whole = await saveCutOff(t, 'Connection: close\r\n');
+        assert.deepEqual([whole.code, whole.err, whole.saved.length], [0, '', 2000]);
+    });
+
+test('snapshot ends if the server stops sending for a minute', { skip: skip || long, timeout: 150000 }, async (t) => {
+    const { code, err, saved } = await saveCutOff(t, 'Content-Length: 5000\r\n', true);
+    assert.deepEqual([code, String(saved)], [1, 'the old picture']);
+    assert.match(err, /the server has stopped sending/);
+});
 
 const film = (url, ...more) => ['clip', url, '-o', join(plant.folder, 'film.mp4'), '--from', '-20s', '--to', '-10s', '--speed', '10',
     '--fps', '1', '--size', '64x64', ...more];
