@@ -4,6 +4,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { residuals, stretches } from '../../clients/web/app/cards/drift.js';
+import { Timeline } from '../../clients/web/app/timeline/timeline.js';
 import { readAddress, writeAddress } from '../../clients/web/core/address.js';
 import {
     arrowS, ask, BAD, clustered, density, gaps, limitLines, line, lost, nextTo, raised, UNCERTAIN, witnesses,
@@ -11,6 +12,7 @@ import {
 import { fieldInstant, fieldText, ticks } from '../../clients/web/core/instant.js';
 import { LEAST_US, newSpanS, panned, readRange, zoomed } from '../../clients/web/core/trend_range.js';
 import { alarmSpans, bands, statistics, valueAt, withNewest } from '../../clients/web/core/trend_values.js';
+import { learnWords } from '../../clients/web/core/words.js';
 
 const GOOD_CODE = 0, UNCERTAIN_CODE = 0x408f0000, BAD_CODE = 0x80050000;
 const points = (...list) => ({ step: false, bucket_us: 0, points: list });
@@ -246,4 +248,34 @@ test('a week of residuals is drawn as a line for each stretch, scaled by sigma',
     assert.deepEqual(stretches([0, 1, null, 1, 1, null, 5], 0.5), ['0.5,26.0 1.5,21.2', '3.5,21.2 4.5,21.2']);
     assert.deepEqual(stretches([2, 2], 1), ['0.5,14.0 1.5,14.0']);
     assert.deepEqual(stretches([null, null], 1), []);
+});
+
+test('the time bar keeps its marks if the server does not answer, and does not take that for a time without alarms', async () => {
+    await learnWords();
+    const { fetch } = globalThis, told = [], session = { token: null, clockUs: () => 9e6, time: { atUs: null }, model: { tags: [] } };
+    const bar = Object.assign(Object.create(Timeline.prototype), { session, tell: (text) => told.push(text), marksAt: 0, toUs: 9e6,
+        marks: [], gaps: [], lost: [], draw() {} });
+    Object.defineProperty(bar, 'spanUs', { value: 3e6 });
+    const raise = { time_us: 8e6, tag: 'TI-1', kind: 'H', event: 'raise', state: 'unacknowledged', before: 'normal', priority: 2 };
+    const answers = (gaps, rows) => {
+        globalThis.fetch = async (url) => Response.json(url.includes('gaps') ? { gaps } : { rows, next_before: null });
+    };
+    try {
+        answers([[7e6, 7.5e6]], [raise]);
+        await bar.askMarks();
+        const state = () => [bar.marks.map(({ us }) => us), bar.gaps, bar.failed !== ''];
+        assert.deepEqual(state(), [[8e6], [[7e6, 7.5e6]], false]);
+        globalThis.fetch = async () => { throw new Error(); };
+        await bar.askMarks();
+        assert.deepEqual(state(), [[8e6], [[7e6, 7.5e6]], true]);
+        await bar.goToAlarm(true);
+        assert.match(told.at(-1), /^Alarms could not be read: ./);
+        answers([], []);
+        await bar.askMarks();
+        assert.deepEqual(state(), [[], [], false]);
+        await bar.goToAlarm(true);
+        assert.match(told.at(-1), /^No earlier alarm/);
+    } finally {
+        globalThis.fetch = fetch;
+    }
 });

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The chart of trends, with an object that records calls instead of the chart library.
+// The chart of trends, with an object that records calls instead of the chart library, and the requests of trends to the server.
 import assert from 'node:assert/strict';
-import { test } from 'node:test';
+import { mock, test } from 'node:test';
 import { LOOKS } from '../../clients/web/app/trends/chart_style.js';
 import { Plot } from '../../clients/web/app/trends/plot.js';
+import { Trends } from '../../clients/web/app/trends/trends.js';
 import { bands } from '../../clients/web/core/trend_values.js';
+import { learnWords } from '../../clients/web/core/words.js';
 
 const SPAN = [0, 100e6];
 const series = (tag) => ({ tag, bucket_us: 0, points: [[0, 1, 0], [50e6, 2, 0]] });
@@ -145,4 +147,85 @@ test('an alarm is a broad line along the curve while it lasts, and a triangle wh
     plot.chart.over = { clientWidth: 100 };
     plot.view.spanUs = 100e6;
     assert.deepEqual([plot.alarmsNear(12e6), plot.alarmsNear(60e6)], [[alarm], []]);
+});
+
+// Returns trends of the tag TI-1 over the instants 500 to 1000, and the list of notes that the trends show.
+function trendsOf() {
+    const notes = [], trends = Object.assign(Object.create(Trends.prototype), { tags: [{ name: 'TI-1', unit: '°C' }], span: [500, 1000],
+        fixed: [500, 1000], session: { model: {}, token: null }, element: { hidden: true }, plots: [], series: new Map(), alarms: new Map(),
+        unknown: [], undrawn: [], unmarked: [], unread: null, note: (text) => notes.push(text) });
+    return { notes, trends };
+}
+
+// Replaces fetch() while f runs. answer(query): returns the server's answer, or throws if there is none.
+async function withServer(answer, f) {
+    const { fetch } = globalThis;
+    globalThis.fetch = async (url, more) => Response.json(await answer(new URLSearchParams(url.split('?')[1]), more));
+    try {
+        await f();
+    } finally {
+        globalThis.fetch = fetch;
+    }
+}
+
+// A journal with `count` changes at the instants 1, 2, ..., in which an alarm is raised and clears in turn.
+const journal = (count) => (query) => {
+    const before = Number(query.get('before') ?? count + 1), limit = Number(query.get('limit'));
+    const rows = Array.from({ length: Math.min(limit, before - 1) }, (_, i) => before - 1 - i).map((id) => ({ id, time_us: id, tag: 'TI-1',
+        kind: 'H', priority: 2, unit: '°C', ...id % 2 ? { event: 'raise', state: 'active', before: 'normal' }
+            : { event: 'clear', state: 'normal', before: 'active' } }));
+    return { rows, next_before: before > limit + 1 ? before - limit : null };
+};
+
+test('a trend reads the alarms of its whole time range, however many there are, or says that some are missing', async () => {
+    const { trends } = trendsOf(), [tag] = trends.tags;
+    await withServer(journal(7000), async () => {
+        const { alarms, isCut } = await trends.alarmsOf(tag, [2001, 7001]);
+        assert.deepEqual([alarms.length, alarms[0].us, alarms.at(-1).us, isCut], [2500, 2001, 6999, false]);
+    });
+    await withServer(journal(20000), async () => {
+        const { alarms, isCut } = await trends.alarmsOf(tag, [2001, 20001]);
+        assert.deepEqual([alarms.length, isCut], [5000, true]);
+    });
+    await withServer(() => ({ rows: [], next_before: null }), async () => {
+        assert.deepEqual(await trends.alarmsOf(tag, [0, 1]), { alarms: [], isCut: false });
+    });
+});
+
+test('a trend keeps its alarms if the journal cannot be read, and says so', async () => {
+    await learnWords();
+    const { trends, notes } = trendsOf();
+    trends.element.hidden = false;
+    await withServer(journal(1000), () => trends.askAlarms());
+    assert.deepEqual([trends.alarms.get('TI-1').length, notes], [250, []]);
+    await withServer(() => { throw new Error(); }, () => trends.askAlarms());
+    assert.equal(trends.alarms.get('TI-1').length, 250);
+    assert.match(notes.at(-1), /^Alarms could not be read: ./);
+    await withServer(journal(1000), () => trends.askAlarms());
+    assert.equal(notes.at(-1), '');
+});
+
+test('a trend abandons a request that the server never answers, and can then ask again', async () => {
+    await learnWords();
+    const { trends, notes } = trendsOf(), silent = (query, { signal }) => new Promise((done, fail) => {
+        signal?.addEventListener('abort', () => fail(signal.reason));
+    });
+    const node = { append() {}, setAttribute() {}, addEventListener() {}, clientWidth: 800 };
+    globalThis.document = { getElementById: () => node, createElement: () => node, head: node };
+    mock.timers.enable({ apis: ['setTimeout'] });
+    try {
+        await withServer(silent, async () => {
+            const asked = trends.refresh();
+            mock.timers.tick(59000);
+            await Promise.resolve();
+            assert.deepEqual([trends.isAsking, notes], [true, []]);
+            mock.timers.tick(2000);
+            await asked;
+            assert.equal(trends.isAsking, false);
+            assert.match(notes.at(-1), /^No trend: ./);
+        });
+    } finally {
+        mock.timers.reset();
+        delete globalThis.document;
+    }
 });

@@ -4,6 +4,7 @@ import { calls } from './alarms.js';
 import { answerText } from './refusals.js';
 import { say } from './words.js';
 
+const UNANSWERED_MS = 60000;
 export const BAD = 2, UNCERTAIN = 1; // severity of a quality: the top two bits of an OPC UA status code
 export const severityOf = (quality) => Math.min(BAD, quality >>> 30);
 
@@ -17,6 +18,19 @@ export async function ask(path, query, token, fetcher = fetch) {
     if (!response.ok)
         throw new Error(await answerText(response));
     return response;
+}
+
+// Like ask(), but returns a promise of the response's contents, and gives up after UNANSWERED_MS: without a network, a request may stay
+// unanswered for many minutes. as: type of the contents, json or blob.
+export async function askInTime(path, query, token, as = 'json') {
+    const abort = new AbortController(), timer = setTimeout(() => abort.abort(), UNANSWERED_MS);
+    try {
+        return await (await ask(path, query, token, (url, more) => fetch(url, { ...more, signal: abort.signal })))[as]();
+    } catch (error) {
+        throw abort.signal.aborted ? new Error(say('reason.unreachable')) : error;
+    } finally {
+        clearTimeout(timer);
+    }
 }
 
 // Converts a tag's series to seconds and values for a chart; null breaks the line. A series of intervals is drawn as a line through their

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A pane with another plant's picture, which this plant's server fetches. Without a picture, the pane says why.
 import { ageText } from '../core/format.js';
-import { ask } from '../core/history.js';
+import { askInTime } from '../core/history.js';
 import { say } from '../core/words.js';
 import { clock } from '../app/common/clock.js';
 import { make, setText } from '../app/common/dom.js';
@@ -21,8 +21,8 @@ export function SnapshotPane(pane, { session, title, body }) {
     body.append(image, card);
 
     async function load({ picture, age_ms: ageMs, at }) {
-        const response = await ask('api/v1/other_plants/picture', { id, picture }, session.token);
-        const url = URL.createObjectURL(await response.blob()), old = image.src;
+        const blob = await askInTime('api/v1/other_plants/picture', { id, picture }, session.token, 'blob');
+        const url = URL.createObjectURL(blob), old = image.src;
         image.src = url;
         await image.decode();
         shown = { picture, ageMs, at };
@@ -36,7 +36,7 @@ export function SnapshotPane(pane, { session, title, body }) {
         const at = askedAt = clock.now();
         asks = true;
         try {
-            const { list: [said] } = await (await ask('api/v1/other_plants', { id }, session.token)).json();
+            const { list: [said] } = await askInTime('api/v1/other_plants', { id }, session.token);
             if (said.picture !== state?.picture)
                 changedAt = at;
             state = { ...said, at };

@@ -414,6 +414,7 @@ table: Werte und Statistik
 raised: {alarm}, gekommen {time}
 remove: {tag} entfernen
 gaps: Schraffiert: kein Wert von {tags}
+cut: Zu viele Alarme von {tags}: die frühesten sind nicht markiert
 failed: Kein Trend: {why}
 unsaved: Nicht exportiert: {why}
 uncharted: dieser Server wurde ohne Diagramme gebaut (npm fehlte)
@@ -434,6 +435,8 @@ after: Nächster Alarm
 goto: Gehe zu
 first: Kein früherer Alarm ist aufgezeichnet
 last: Kein späterer Alarm ist aufgezeichnet
+unread: Alarme konnten nicht gelesen werden: {why}
+unmarked: Markierungen fehlen vielleicht oder sind alt: {why}
 play: Abspielen
 pause: Anhalten
 speed: Wiedergabetempo

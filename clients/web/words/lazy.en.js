@@ -413,6 +413,7 @@ table: Values and statistics
 raised: {alarm}, raised {time}
 remove: Remove {tag}
 gaps: Hatched: no value of {tags}
+cut: Too many alarms to mark all of {tags}: the earliest are missing
 failed: No trend: {why}
 unsaved: Not exported: {why}
 uncharted: this server was built without charts (npm was missing)
@@ -433,6 +434,8 @@ after: Next alarm
 goto: Go to
 first: No earlier alarm was recorded
 last: No later alarm was recorded
+unread: Alarms could not be read: {why}
+unmarked: Marks may be missing or old: {why}
 play: Play
 pause: Pause
 speed: Playback speed

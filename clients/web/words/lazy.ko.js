@@ -408,6 +408,7 @@ table: 값과 통계
 raised: {alarm}, {time} 발생
 remove: {tag} 제거
 gaps: 빗금: {tags} 값 없음
+cut: {tags}의 알람이 너무 많아 가장 이른 알람은 표시되지 않습니다
 failed: 추세를 표시할 수 없음: {why}
 unsaved: 내보내지 못함: {why}
 uncharted: 이 서버는 차트 없이 빌드되었습니다 (npm이 없었음)
@@ -428,6 +429,8 @@ after: 다음 알람
 goto: 이동
 first: 더 이른 알람 기록이 없습니다
 last: 더 늦은 알람 기록이 없습니다
+unread: 알람을 읽을 수 없습니다: {why}
+unmarked: 표시가 빠졌거나 오래되었을 수 있음: {why}
 play: 재생
 pause: 일시 정지
 speed: 재생 속도

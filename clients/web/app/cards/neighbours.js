@@ -2,14 +2,14 @@
 // A sensor's value as predicted from its neighbours (leave-one-out) by the daemon: a line on the sensor's card, and a list of
 // the largest deviations.
 import { unitText, valueText } from '../../core/format.js';
-import { ask } from '../../core/history.js';
+import { askInTime } from '../../core/history.js';
 import { say } from '../../core/words.js';
 import { make } from '../common/dom.js';
 import { driftOf, driftText } from './drift.js';
 
 const AGAIN_MS = 3000, LISTED = 5;
 
-const sensors = (query, token) => ask('api/v1/neighbours', query, token).then((answer) => answer.json()).then((rows) => rows.sensors)
+const sensors = (query, token) => askInTime('api/v1/neighbours', query, token).then((rows) => rows.sensors)
     .catch(() => []); // after a failed request no prediction is shown, because an old one would mislead
 
 // Returns the prediction as text, such as 81.3 °C ± 2.0, with the reading's deviation from it; null if there is no prediction.

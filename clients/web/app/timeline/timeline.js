@@ -2,7 +2,7 @@
 // The time bar: a slider over the recorded history that marks gaps, lost sources and alarms (clickable), with playback, its
 // speed, a date field and a button that returns to the present.
 import { ageText, timeOrDay, zoneClock } from '../../core/format.js';
-import { arrowS, ask, clustered, density, lost, nextTo, raised, witnesses } from '../../core/history.js';
+import { arrowS, askInTime, clustered, density, lost, nextTo, raised, witnesses } from '../../core/history.js';
 import { fieldInstant, fieldText, ticks } from '../../core/instant.js';
 import { travel } from '../../core/requests.js';
 import { say } from '../../core/words.js';
@@ -30,7 +30,7 @@ export class Timeline {
     // tell(text): shows a message to the user.
     constructor({ session, modules, tell }) {
         Object.assign(this, { session, modules, tell, open: false, toUs: null, marks: [], gaps: [], lost: [], wanted: null,
-            draggedAt: -Infinity });
+            draggedAt: -Infinity, askedAt: 0, marksAt: 0, failed: '' });
         this.slider = byId('time-slider');
         fillSelect(byId('time-span'), SPANS.map(([seconds, unit, n]) => [seconds, say(`age.${unit}`, { n })]), 3600);
         fillSelect(byId('time-speed'), SPEEDS.map((speed) => [speed, `${speed}×`]), 60);
@@ -107,7 +107,7 @@ export class Timeline {
             return;
         if (this.atUs === null)
             this.toUs = this.session.clockUs() ?? this.toUs;
-        if (performance.now() - (this.askedAt ?? 0) > MARKS_MS)
+        if (performance.now() - this.askedAt > MARKS_MS)
             this.askMarks();
         this.show();
     }
@@ -157,11 +157,15 @@ export class Timeline {
 
     async goToAlarm(backwards) {
         const here = this.atUs ?? this.session.clockUs();
-        const found = await this.alarmFrom(here, backwards).catch(() => null);
-        if (found)
-            this.showAlarm(found);
-        else
-            this.tell(say(backwards ? 'time.first' : 'time.last'));
+        try {
+            const found = await this.alarmFrom(here, backwards);
+            if (found)
+                this.showAlarm(found);
+            else
+                this.tell(say(backwards ? 'time.first' : 'time.last'));
+        } catch (error) {
+            this.tell(say('time.unread', { why: error.message }));
+        }
     }
 
     // Shows the plant at the instant when an alarm was raised, flies to its tag, and names the alarm over the picture.
@@ -195,8 +199,8 @@ export class Timeline {
         return null;
     }
 
-    async journal(query) {
-        return (await ask('api/v1/alarms/journal', query, this.session.token)).json();
+    journal(query) {
+        return askInTime('api/v1/alarms/journal', query, this.session.token);
     }
 
     play() {
@@ -209,15 +213,17 @@ export class Timeline {
             travel(this.session, this.toUs - this.spanUs, this.speed);
     }
 
+    // Requests the marks of the time span. Marks whose request fails stay unchanged, and the bar says so.
     async askMarks() {
-        this.askedAt = performance.now();
+        const at = this.askedAt = performance.now();
         const span = { from: (this.toUs - this.spanUs) / 1e6, to: this.toUs / 1e6 }, { token } = this.session;
-        const [marks, gaps, all] = await Promise.all([
-            this.askRaised(span),
-            ask('api/v1/history/gaps', span, token).then((answer) => answer.json()).then((said) => said.gaps),
-            this.askLost(span),
-        ].map((one) => one.catch(() => []))); // if the request for one kind of marks fails, only these marks are missing
-        Object.assign(this, { marks, gaps, lost: all });
+        const gaps = askInTime('api/v1/history/gaps', span, token).then((said) => said.gaps);
+        const all = await Promise.allSettled([this.askRaised(span), gaps, this.askLost(span)]);
+        if (at < this.marksAt)
+            return; // a newer request, perhaps for another time span, has been answered earlier
+        this.marksAt = at;
+        ['marks', 'gaps', 'lost'].forEach((name, i) => { this[name] = all[i].value ?? this[name]; });
+        this.failed = all.find(({ reason }) => reason)?.reason.message ?? '';
         this.draw();
     }
 
@@ -251,7 +257,7 @@ export class Timeline {
         if (tags.length === 0)
             return [];
         const query = { ...span, tags: tags.join(','), points: LOST_POINTS };
-        const { series } = await (await ask('api/v1/history', query, this.session.token)).json();
+        const { series } = await askInTime('api/v1/history', query, this.session.token);
         return sources.map((one) => ({ source: one.source, spans: lost(series.filter(({ tag }) => one.tags.includes(tag)),
             span.from * 1e6, span.to * 1e6) }));
     }
@@ -350,7 +356,8 @@ export class Timeline {
         }
         track.replaceChildren(...nodes, ...track.querySelectorAll('.cross'));
         const here = this.marks.filter(({ us }) => us === this.atUs).map(({ tag, kind }) => `${tag} ${kind}`).join(', ');
-        setText(byId('time-alarms'), here || (this.marks.length > 0 ? say('time.raised', { count: this.marks.length }) : ''));
+        setText(byId('time-alarms'), this.failed ? say('time.unmarked', { why: this.failed })
+            : here || (this.marks.length > 0 ? say('time.raised', { count: this.marks.length }) : ''));
     }
 }
 

@@ -2,7 +2,7 @@
 // Trends of up to eight tags: recorded values over a relative or absolute time range, with zoom and pan. Plot draws the curves,
 // two units to a chart; TrendTable shows numbers.
 import { timeOrDay, unitText, valueText, zoneClock, zoneOf } from '../../core/format.js';
-import { ask, BAD, gaps } from '../../core/history.js';
+import { ask, askInTime, BAD, gaps } from '../../core/history.js';
 import { fieldText } from '../../core/instant.js';
 import { travel } from '../../core/requests.js';
 import { newSpanS, panned, readRange, zoomed } from '../../core/trend_range.js';
@@ -21,7 +21,8 @@ const SPANS = [['3600', 'hour'], ['28800', 'shift'], ['86400', 'day'], ['604800'
 const EXAMPLES = ['minutes', 'hours', 'today', 'yesterday', 'night'];
 const MOVES = ['earlier', 'later', 'in', 'out', 'back'];
 const MOST = LOOKS.light.lines.length, UNITS_PER_PLOT = 2, FRESH_MS = 5000, NOW_MS = 1000, SETTLED_MS = 250, PAN = 0.5, ZOOM = 2;
-const ALARM_ROWS = 2000, MATCHES = 30, MOST_BACK = 50, ALMOST_US = 2e6;
+// ALARM_PAGES: maximum number of requests, of ALARM_ROWS rows of the alarm journal each, for the alarms of a tag
+const ALARM_ROWS = 2000, ALARM_PAGES = 5, MATCHES = 30, MOST_BACK = 50, ALMOST_US = 2e6;
 const WALL_TEXT = 13; // minimum font size of charts on a video wall, in units of the page: 16 minutes of arc (wall.js)
 const HEAD_PX = 24, ROW_PX = 22; // heights in the table
 // minimum height of a phone's charts in CSS pixels; if all charts together have less room, the trend shows one at a time, with a switch
@@ -70,6 +71,7 @@ export class Trends {
         this.undrawn = []; // names of tags that are not drawn, because the trend already has its maximum number of tags
         this.series = new Map(); // tag name -> its recorded series; empty until the server has answered
         this.alarms = new Map(); // tag name -> its alarms in the time range
+        this.unmarked = []; // texts that say which alarms of the time range the charts do not mark
         this.element = byId('trends');
         this.addControls();
         this.table = new TrendTable(this);
@@ -383,7 +385,7 @@ export class Trends {
 
     close() {
         this.element.hidden = true;
-        Object.assign(this, { unknown: [], undrawn: [] });
+        Object.assign(this, { unknown: [], undrawn: [], unmarked: [] });
         this.drop();
     }
 
@@ -415,9 +417,8 @@ export class Trends {
         this.isLate = false;
         const span = this.range, { tags } = this, points = Math.max(200, Math.round(byId('trend-chart').clientWidth / 2));
         try {
-            const answer = ask('api/v1/history', { ...this.query(span), points }, this.session.token);
-            const [uPlot, response] = await Promise.all([load(), answer]);
-            const { series } = await response.json();
+            const answer = askInTime('api/v1/history', { ...this.query(span), points }, this.session.token);
+            const [uPlot, { series }] = await Promise.all([load(), answer]);
             if (this.isOpen && tags === this.tags)
                 this.take(uPlot, span, series);
         } catch (error) {
@@ -451,22 +452,37 @@ export class Trends {
         const unread = this.unread === null ? [] : [say('trends.unread', { text: this.unread, example: say('trends.example.night') })];
         const unshown = [['gaps', lacking], ['unknown', this.unknown], ['undrawn', this.undrawn]].filter(([, names]) => names.length > 0)
             .map(([key, names]) => say(`trends.${key}`, { tags: names.join(', '), count: MOST }));
-        return [...unread, ...unshown].join(' · ');
+        return [...unread, ...unshown, ...this.unmarked].join(' · ');
     }
 
-    // Requests the alarms of the tags in the time range, and earlier alarms that may last into the range.
+    // Requests the alarms of the tags in the time range, and earlier alarms that may last into the range. If that fails, the marks stay
+    // unchanged, and the note says so.
     async askAlarms() {
-        const { tags, span } = this, { token } = this.session;
-        const all = await Promise.all(tags.map(async ({ name, unit }) => {
-            const query = { tag: name, to: (span[1] / 1e6).toFixed(3), limit: ALARM_ROWS };
-            const answer = await ask('api/v1/alarms/journal', query, token).catch(() => null);
-            return answer ? alarmSpans((await answer.json()).rows, unit).filter(({ endUs }) => endUs === null || endUs > span[0]) : [];
-        }));
+        const { tags, span } = this, all = await Promise.allSettled(tags.map((tag) => this.alarmsOf(tag, span)));
         if (tags !== this.tags || span !== this.span || !this.isOpen)
             return;
-        this.alarms = new Map(tags.map(({ name }, i) => [name, all[i]]));
+        this.alarms = new Map(tags.map(({ name }, i) => [name, all[i].value?.alarms ?? this.alarms.get(name)]));
+        const failed = all.find(({ reason }) => reason), cut = tags.filter((_, i) => all[i].value?.isCut).map(({ name }) => name);
+        const unmarked = [...failed ? [say('time.unread', { why: failed.reason.message })] : [],
+            ...cut.length > 0 ? [say('trends.cut', { tags: cut.join(', ') })] : []];
         this.plots.forEach((plot) => plot.rows.forEach((row) => { row.alarms = this.alarms.get(row.tag.name); }));
+        if (unmarked.join() !== this.unmarked.join()) { // other notes stay if nothing has changed
+            this.unmarked = unmarked;
+            this.note(this.words());
+        }
         this.redraw();
+    }
+
+    // Returns a promise of a tag's alarms in a time range: { alarms, isCut (true: the earliest ones are missing) }.
+    async alarmsOf({ name, unit }, [from, to]) {
+        const rows = [], query = { tag: name, to: (to / 1e6).toFixed(3), limit: ALARM_ROWS };
+        const isCut = () => query.before !== null && !(rows.at(-1)?.time_us <= from);
+        for (let i = 0; i < ALARM_PAGES && isCut(); i++) {
+            const page = await askInTime('api/v1/alarms/journal', query, this.session.token);
+            rows.push(...page.rows);
+            query.before = page.next_before;
+        }
+        return { alarms: alarmSpans(rows, unit).filter(({ endUs }) => endUs === null || endUs > from), isCut: isCut() };
     }
 
     // --- charts
