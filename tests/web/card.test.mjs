@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The position of a card: inside the picture, never over its point, over as few other markers as possible, at most 280 pixels
-// high.
+// high. Also the requests for the value on the card of a point.
 import assert from 'node:assert/strict';
-import { test } from 'node:test';
+import { mock, test } from 'node:test';
 import { cardPlace } from '../../clients/web/app/cards/card_position.js';
+import { Place } from '../../clients/web/app/cards/place.js';
+import { projector } from '../../clients/web/core/camera.js';
 import { randomNumbers } from './random.mjs';
 
 const random = randomNumbers();
@@ -42,4 +44,58 @@ test('a card changes its side only to cover fewer markers', () => {
     const first = cardPlace(card, free, [440, 300]), next = cardPlace(card, free, [470, 300], [], first);
     assert.equal(next.side, first.side);
     assert.notEqual(cardPlace(card, free, [470, 300], [[600, 300, true]], next).side, next.side);
+});
+
+// A card of the point (0, 5, 1), whose requests are collected in `sent`.
+function placeAt(camera, params = {}) {
+    const sent = [], session = { welcomed: true, picture: { camera }, params, pickSeq: 0, size: { width: 800, height: 600 },
+        connection: { send: (message) => sent.push(message) } };
+    const picked = { asset: 'E-101', position: [0, 5, 1], value: 1 };
+    const place = Object.assign(Object.create(Place.prototype), { session, picked, half: 0, asked: null, isLate: false, element: {},
+        build() {}, show() {} });
+    return { place, sent, answer: (value, more = {}) => place.hear({ purpose: 'place', ...picked, value, ...more }) };
+}
+
+const LENS = { up: [0, 0, 1], fov: 30 };
+
+test('the card of a point asks for this point\'s value, wherever the point is in the picture or outside', () => {
+    for (let round = 0; round < 500; round++) {
+        const eye = [random(-9, 9), random(-9, 0), random(-9, 9)], target = [random(-4, 4), random(1, 9), random(-9, 9)];
+        for (const camera of [{ ...LENS, eye, target }, { ...LENS, eye, target, height_m: 3 }]) {
+            const { place, sent } = placeAt(camera, { split: {} });
+            place.half = 1;
+            place.ask();
+            const { x, y, camera: { projection, ...asked } } = sent[0], at = projector(asked, 400, 600)([0, 5, 1]);
+            const what = JSON.stringify({ camera, asked, at });
+            assert.ok(x === 600 && y === 300 && Math.hypot(at[0] - 200, at[1] - 300) < 1e-6, what);
+            assert.equal(projection, camera.height_m && 'orthographic');
+            const turn = asked.target.map((one, i) => one - asked.eye[i] - (target[i] - eye[i]));
+            assert.ok(camera.height_m ? Math.hypot(...turn) < 1e-9 : Math.hypot(...asked.eye.map((one, i) => one - eye[i])) === 0, what);
+        }
+    }
+});
+
+test('the card of a point repeats its request if there is no answer, and if readings change before the answer', () => {
+    let now = 10000;
+    const { mock: calls } = mock.method(performance, 'now', () => now);
+    const { place, sent, answer } = placeAt({ ...LENS, eye: [0, 0, 0], target: [0, 9, 0] });
+    const after = (ms) => {
+        now += ms;
+        place.ask();
+        return sent.length;
+    };
+    try {
+        assert.deepEqual([after(0), after(1000), after(1900), after(200)], [1, 1, 1, 2], 'an unanswered request is repeated');
+        answer(2);
+        assert.deepEqual([place.picked.value, sent.length], [2, 2]);
+        assert.deepEqual([after(0), after(100)], [3, 3]);
+        answer(3);
+        assert.deepEqual([place.picked.value, sent.length], [3, 4], 'asks again, because readings have changed since the request');
+        answer(4, { purpose: 'anchor' });
+        assert.deepEqual([place.picked.value, after(100)], [3, 5], 'a replaced request is repeated');
+        answer(5, { position: [1, 5, 1] });
+        assert.equal(place.picked, null, 'the card closes when something hides its point');
+    } finally {
+        calls.restore();
+    }
 });

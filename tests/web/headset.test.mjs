@@ -178,7 +178,7 @@ test('the floor, the user\'s position on it, and the wrist panel are placed corr
 test('the card repeats its request if there is no answer, or if another module\'s request replaced it', () => {
     let now = 10000;
     const { mock: calls } = mock.method(performance, 'now', () => now);
-    const sent = [], session = { welcomed: true, picture: {}, pickSeq: 0, size: { width: 800, height: 600 },
+    const sent = [], session = { welcomed: true, picture: {}, params: {}, pickSeq: 0, size: { width: 800, height: 600 },
         connection: { send: ({ seq }) => sent.push(seq) } };
     const hands = Object.assign(Object.create(Hands.prototype), { headset: { session, shown: { camera: CAMERA }, rig: { axes: [0, UP] } },
         asked: null, askedAt: 0, card: { at: [0, 5, 1], picked: { asset: 'E-101', value: 1 } } });

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Requests to the server that users cause only occasionally. (session.js sends the frequent ones: cameras, parameters and
 // acknowledgements.)
-import { cameraMessage } from './camera.js';
+import { basis, cameraMessage, isParallel } from './camera.js';
 import { asAsked } from './session.js';
+import { halves } from './split_view.js';
+import { add, along, dot, subtract } from './vector.js';
 
 // Asks the server for a camera that shows an asset, a tag or the whole plant (id null); side: as in the message `fit` (PROTOCOL.md). The
 // server answers with `fitted`.
@@ -25,6 +27,15 @@ export function askPick(session, [x, y], purpose, camera = null) {
     session.pickPurpose = purpose;
     const from = camera ?? asAsked(session.picture.camera);
     session.connection.send({ type: 'pick', seq: ++session.pickSeq, x, y, camera: cameraMessage(from) });
+}
+
+// Asks the server what is at a point of the plant, seen from the eye of a camera; the point may be outside the picture. Names the middle of
+// the picture, and a camera that has the point there. half: half of a split view, 0 left, 1 right.
+export function askPoint(session, point, purpose, half = 0, camera = asAsked(session.picture.camera)) {
+    const { width, height } = session.following ?? session.size, all = halves(session.params, width), part = all[half] ?? all[0];
+    const from = subtract(point, camera.target), { forward } = basis(camera), aside = along(from, forward, -dot(from, forward));
+    askPick(session, [part.left + part.width / 2, height / 2], purpose, isParallel(camera)
+        ? { ...camera, eye: add(camera.eye, aside), target: add(camera.target, aside) } : { ...camera, target: point });
 }
 
 // Applies an action to alarms [[tag, kind], ...]; the server answers with `alarmed`.

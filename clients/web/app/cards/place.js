@@ -2,14 +2,15 @@
 // The card of a point on the plant's surface: its equipment, the value at the point (interpolated between sensors), the sensors
 // that contribute to the value, and the uncertainty.
 import { numberText, unitText, valueText } from '../../core/format.js';
-import { askPick } from '../../core/requests.js';
+import { askPick, askPoint } from '../../core/requests.js';
 import { halves } from '../../core/split_view.js';
 import { say } from '../../core/words.js';
 import { placeInPicture, standBeside } from './card_position.js';
 import { byId, glyph, make } from '../common/dom.js';
 import { closeButton, fill } from '../common/widgets.js';
 
-const SAME_M = 0.05;
+// SAME_M: largest distance between two answers about the same point; a request without an answer is abandoned after UNANSWERED_MS
+const SAME_M = 0.05, UNANSWERED_MS = 3000;
 
 export class Place {
     // showAsset(how, asset) hides an asset, makes it transparent or isolates it (hides all others). makeRoom() closes panels that leave no
@@ -22,6 +23,7 @@ export class Place {
         // pending request for what is at a point of the picture: 'new' (another point than the card's) or 'again' (the same
         // point); null: none
         this.asked = null;
+        this.isLate = false; // true: readings or parameters have changed since the pending request
         session.on('picked', (picked) => this.hear(picked));
         session.on('tags', () => this.ask());
         session.on('params', () => this.ask());
@@ -30,9 +32,9 @@ export class Place {
 
     // Opens the card for the point at (x, y) in CSS pixels of the viewport.
     open(x, y) {
-        this.asked = 'new';
         this.half = this.session.shown.split && x >= this.viewport.width / 2 ? 1 : 0;
-        this.pick(x, y);
+        this.begin('new');
+        askPick(this.session, this.viewport.pixelOf(x, y), 'place');
     }
 
     close() {
@@ -40,17 +42,17 @@ export class Place {
         this.element.hidden = true;
     }
 
-    pick(x, y) {
-        askPick(this.session, this.viewport.pixelOf(x, y), 'place');
+    begin(asked) {
+        Object.assign(this, { asked, askedAt: performance.now(), isLate: false });
     }
 
-    // Requests the point's value again when readings change.
+    // Requests the point's value again when readings or parameters change, even while the point is outside the picture.
     ask() {
-        const at = this.picked && this.project();
-        if (at && this.asked === null) {
-            this.asked = 'again';
-            this.pick(at[0], at[1]);
-        }
+        this.isLate = this.asked !== null && performance.now() - this.askedAt < UNANSWERED_MS;
+        if (!this.picked || this.isLate || !this.session.picture)
+            return;
+        this.begin('again');
+        askPoint(this.session, this.picked.position, 'place', this.half);
     }
 
     hear(picked) {
@@ -77,6 +79,8 @@ export class Place {
             this.makeRoom();
         }
         this.show();
+        if (this.isLate)
+            this.ask();
     }
 
     isSamePlace({ asset, position }) {

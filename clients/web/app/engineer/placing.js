@@ -62,7 +62,7 @@ export class Placing {
 
     listen() {
         const { session } = this;
-        session.on('picked', ({ purpose, asset, position }) => { if (purpose === 'place') this.put(asset, position); });
+        session.on('picked', ({ purpose, asset, position }) => { if (purpose === 'placing') this.put(asset, position); });
         session.on('placed', () => this.show());
         session.on('gaps', (message) => this.showGaps(message));
         session.on('tags_diff', (message) => this.showDiff(message));
@@ -119,7 +119,7 @@ export class Placing {
         if (!this.tag)
             return false;
         this.begin = this.moves;
-        askPick(this.session, this.viewport.pixelOf(x, y), 'place');
+        askPick(this.session, this.viewport.pixelOf(x, y), 'placing');
         return true;
     }
 
@@ -160,7 +160,7 @@ export class Placing {
         this.at = [event.clientX - box.left, event.clientY - box.top];
         this.frame ??= requestAnimationFrame(() => {
             this.frame = null;
-            askPick(this.session, this.viewport.pixelOf(...this.at), 'place');
+            askPick(this.session, this.viewport.pixelOf(...this.at), 'placing');
         });
     }
 

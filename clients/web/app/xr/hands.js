@@ -3,7 +3,7 @@
 // or the floor. Grabbing moves the room.
 import { RADIANS } from '../../core/camera.js';
 import { directionOf, floorHit, hitOf, panelHit, pointOf, poseOf, standAt } from '../../core/headset_views.js';
-import { askPick } from '../../core/requests.js';
+import { askPoint } from '../../core/requests.js';
 import { asAsked } from '../../core/session.js';
 import { add, along, cross, dot, length, scale, subtract, unit } from '../../core/vector.js';
 import { Board, cardLines, showCard, showColour, showRing, showWrist } from './boards.js';
@@ -112,11 +112,9 @@ export class Hands {
 
     // Asks the server what is at a point of the plant; hear() gets the answer.
     pick({ point }, purpose = 'headset') {
-        const { session, shown } = this.headset, { width, height } = session.size;
+        const { session, shown } = this.headset;
         Object.assign(this, { asked: purpose, askedAt: performance.now() });
-        // The server tells what is at a pixel of a picture from a given camera. So the request names the picture's centre, and
-        // a camera that looks at the point.
-        askPick(session, [width / 2, height / 2], purpose, { ...asAsked(shown.camera), target: point });
+        askPoint(session, point, purpose, 0, asAsked(shown.camera));
     }
 
     hear(picked) {
