@@ -5,6 +5,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { residuals, stretches } from '../../clients/web/app/cards/drift.js';
 import { Timeline } from '../../clients/web/app/timeline/timeline.js';
+import { Compare } from '../../clients/web/app/views/compare.js';
 import { readAddress, writeAddress } from '../../clients/web/core/address.js';
 import {
     arrowS, ask, BAD, clustered, density, gaps, limitLines, line, lost, nextTo, raised, UNCERTAIN, witnesses,
@@ -278,4 +279,29 @@ test('the time bar keeps its marks if the server does not answer, and does not t
     } finally {
         globalThis.fetch = fetch;
     }
+});
+
+test('the right half of two times gets the sensor, the factors and the baseline of the left half, if it can have them', () => {
+    const first = { group: 'temperature', show: 'value', sensor: null, sensors: {}, baseline: null, range: [0, 100], split: null,
+        strength: 1 };
+    const sent = [], other = { welcomed: true, picture: {}, params: first, setParams: (change) => sent.push(change) };
+    const compare = Object.assign(Object.create(Compare.prototype), { session: { params: first, role: 'engineer' }, connected: {},
+        told: null, frame: { contentWindow: { plantcast: { session: other } } } });
+    const tells = (change) => {
+        compare.session.params = { ...compare.session.params, ...change };
+        sent.length = 0;
+        compare.tellParams();
+        return sent[0] ?? null;
+    };
+    assert.equal(tells({}), null);
+    assert.deepEqual(tells({ show: 'distance', sensor: 'TI-1' }), { show: 'distance', sensor: 'TI-1' });
+    assert.deepEqual(tells({ sensors: { 'TI-1': { strength: 2 }, 'TI-2': { decay: 3 } } }),
+        { sensors: { 'TI-1': { strength: 2 }, 'TI-2': { decay: 3 } } });
+    assert.deepEqual(tells({ sensors: { 'TI-2': { decay: 3 } } }), { sensors: { 'TI-1': null } });
+    const unconfirmed = { show: 'difference', baseline: 'noon', range: [-25, 25] };
+    assert.equal(tells(unconfirmed), null, 'waits until the server has confirmed the baseline');
+    assert.deepEqual(tells({ baseline: { name: 'noon', time_us: 1 } }), { range: [-25, 25], show: 'difference', baseline: 'noon' });
+    assert.deepEqual(tells({ baseline: { name: null, time_us: 2 } }), { show: 'value', baseline: null }, 'readings without a name');
+    compare.session.role = 'operator';
+    assert.equal(tells({ strength: 3, sensors: {} }), null, 'an operator may not send what only engineers may');
 });
