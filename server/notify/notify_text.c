@@ -276,7 +276,9 @@ static json_t *alert(const struct plant *plant, const struct outbox_item *item, 
         mem_free(value);
     }
     json_t *one = json_pack("{s:o,s:o}", "labels", labels, "annotations", annotations);
-    set_time(one, "startsAt", item->raised_us);
+    /* Alertmanager refuses an alert that starts after it ends, as after the wall clock was set back */
+    int64_t latest_us = item->ended_us ? item->ended_us : now_us;
+    set_time(one, "startsAt", item->raised_us < latest_us ? item->raised_us : latest_us);
     set_time(one, "endsAt", item->ended_us ? item->ended_us : now_us + OUTBOX_ALERT_US);
     set_text(one, "generatorURL", plant->notify->link);
     text_finish(&summary);

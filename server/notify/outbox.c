@@ -266,6 +266,9 @@ void outbox_tick(struct outbox *outbox, int64_t now_us)
 {
     for (size_t i = outbox->count; i-- > 0;) {
         struct episode *episode = &outbox->episodes[i];
+        if (episode->cleared_us >
+            now_us) /* the wall clock was set back: Alertmanager would show an alert that ends in the future as active */
+            episode->cleared_us = now_us;
         if (!episode->ended_us)
             advance(outbox, episode, now_us);
         else if (episode->cleared_us && now_us - episode->cleared_us > FORGET_US)
@@ -291,15 +294,28 @@ static int by_urgency(const void *pa, const void *pb)
     return a->raised_us != b->raised_us ? (a->raised_us < b->raised_us ? -1 : 1) : strcmp(a->name, b->name);
 }
 
+/* Returns true if enough time has passed since the oldest queued alarm was queued. A time in the future means that the wall
+   clock was set back since. */
+static bool is_gathered(const struct outbox *outbox, const struct recipient_box *box, int64_t now_us)
+{
+    return now_us - box->since_us >= (int64_t)(outbox->plant->notify->gather_s * (double)S) || now_us < box->since_us;
+}
+
+/* Returns true if the pause after a failed delivery is not over. A retry farther away than the longest pause means that the wall
+   clock was set back since: the retry is then due. */
+static bool is_before_retry(const struct recipient_box *box, int64_t now_us)
+{
+    return now_us < box->retry_us && box->retry_us - now_us <= RETRY_MAX_US;
+}
+
 static bool is_due(const struct outbox *outbox, const struct recipient_box *box, int64_t now_us)
 {
     const struct plant_notify *notify = outbox->plant->notify;
     int best = ALARM_PRIORITIES + 1;
     for (size_t i = 0; i < box->waiting.count; i++)
         best = box->waiting.at[i].said.priority < best ? box->waiting.at[i].said.priority : best;
-    bool gathered = now_us - box->since_us >= (int64_t)(notify->gather_s * (double)S) || now_us < box->since_us;
     bool paused = box->sent_us && now_us >= box->sent_us && now_us - box->sent_us < (int64_t)(notify->pause_s * (double)S);
-    return box->waiting.count > 0 && gathered && (!paused || best < box->last_priority);
+    return box->waiting.count > 0 && is_gathered(outbox, box, now_us) && (!paused || best < box->last_priority);
 }
 
 static void make_id(struct outbox *outbox, int recipient, int64_t now_us)
@@ -365,15 +381,15 @@ static bool goes_to(const struct plant_notify *notify, const struct episode *epi
 static bool make_alerts(struct outbox *outbox, int recipient, int64_t now_us)
 {
     struct recipient_box *box = &outbox->boxes[recipient];
-    bool gathered = now_us - box->since_us >= (int64_t)(outbox->plant->notify->gather_s * (double)S);
-    bool due = (box->changed && gathered) || now_us - box->sent_us >= OUTBOX_REFRESH_US || now_us < box->sent_us;
-    if (!due || now_us < box->retry_us)
+    bool set_back = now_us < box->sent_us; /* the wall clock was set back after the last message */
+    bool due = (box->changed && is_gathered(outbox, box, now_us)) || now_us - box->sent_us >= OUTBOX_REFRESH_US || set_back;
+    if (!due || is_before_retry(box, now_us))
         return false;
     free_batch(box);
     box->batch = mem_array(outbox->count + 1, sizeof(*box->batch));
     for (size_t i = 0; i < outbox->count; i++) {
         const struct episode *episode = &outbox->episodes[i];
-        if ((!episode->cleared_us || episode->cleared_us >= box->sent_us) && goes_to(outbox->plant->notify, episode, recipient))
+        if ((!episode->cleared_us || episode->cleared_us >= box->sent_us || set_back) && goes_to(outbox->plant->notify, episode, recipient))
             put_alert(episode, box);
     }
     box->batch_us = now_us;
@@ -393,7 +409,7 @@ bool outbox_next(struct outbox *outbox, int recipient, int64_t now_us, struct ou
             return false;
     } else if (box->batch_count == 0 && is_due(outbox, box, now_us)) {
         make_batch(outbox, recipient, now_us);
-    } else if (now_us < box->retry_us && box->retry_us - now_us <= RETRY_MAX_US) {
+    } else if (is_before_retry(box, now_us)) {
         return false;
     }
     *out = (struct outbox_message){ .items = box->batch, .count = box->batch_count, .left_out = box->left_out, .made_us = box->batch_us };

@@ -394,6 +394,40 @@ CASE(it_escalates_after_the_clock_was_set_back)
     assert_int_equal(deliver(f, BOSS, before + 10 * MIN + 3 * S), 1);
 }
 
+CASE(alertmanager_gets_alerts_after_the_clock_was_set_back)
+{
+    struct outbox_message message;
+    int64_t before = T0 - 60 * MIN;
+    load(f, "  - { id: all, to: am }\n");
+    put(f, 0, LOCAL, true, true, T0, T0);
+    assert_true(outbox_next(f->outbox, AM, T0 + 3 * S, &message));
+    outbox_failed(f->outbox, AM, T0 + 3 * S);
+    assert_false(outbox_next(f->outbox, AM, T0 + 3 * S, &message)); /* the retry is due 1 s later */
+    assert_int_equal(deliver(f, AM, before), 1);
+    put(f, 1, LOCAL, true, true, before + 10 * S, before + 10 * S);
+    assert_int_equal(deliver(f, AM, before + 13 * S), 2);
+    /* alarm 2 ends before a second step, alarm 1 afterwards, before the next message */
+    put(f, 2, LOCAL, true, false, before + 20 * S, before + 20 * S);
+    put(f, 2, LOCAL, false, false, before + 20 * S, before + 21 * S);
+    assert_int_equal(deliver(f, AM, before + 24 * S), 3);
+    before -= 60 * MIN;
+    put(f, 1, LOCAL, false, false, before + 10 * S, before);
+    outbox_tick(f->outbox, before + MIN);
+    assert_true(outbox_next(f->outbox, AM, before + MIN, &message));
+    assert_int_equal(message.count, 3);
+    json_t *alerts = test_json(json_loads(test_memory(notify_alerts_text(f->c->plant, &message, before + MIN)), 0, NULL));
+    const char *now = "2026-11-18T09:07:40.000Z";
+    int ended = 0;
+    for (size_t i = 0; i < 3; i++) {
+        const json_t *alert = json_array_get(alerts, i);
+        const char *start = json_string_value(json_object_get(alert, "startsAt"));
+        const char *end = json_string_value(json_object_get(alert, "endsAt"));
+        assert_true(strcmp(start, end) <= 0); /* Alertmanager refuses an alert that starts after it ends */
+        ended += strcmp(end, now) <= 0;
+    }
+    assert_int_equal(ended, 2); /* an alert whose end is in the future is active */
+}
+
 CASE(a_clock_that_jumps_ahead_loses_nothing_later)
 {
     struct outbox_message message;
