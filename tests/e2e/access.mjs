@@ -489,10 +489,11 @@ async function startNginx(port) {
         .catch((error) => { nginx.kill(); throw error; });
     return nginx;
 }
-function throughNginx(port, url, bearer = null, more = {}) {
+function throughNginx(port, url, bearer = null, more = {}, body = null) {
     const headers = { Host: 'plant.example', ...(bearer ? { Authorization: `Bearer ${bearer}` } : {}), ...more };
     return new Promise((done, fail) => {
-        const asked = request({ port, host: '127.0.0.1', path: url, headers, rejectUnauthorized: false }, (response) => {
+        const to = { port, host: '127.0.0.1', path: url, method: body ? 'POST' : 'GET', headers, rejectUnauthorized: false };
+        const asked = request(to, (response) => {
             response.resume();
             done(response.statusCode);
         });
@@ -500,13 +501,13 @@ function throughNginx(port, url, bearer = null, more = {}) {
             socket.once('data', () => { socket.destroy(); done(response.statusCode); });
             socket.write(encodeFrame(1, JSON.stringify({ type: 'hello', width: 64, height: 64, codecs: ['jpeg'], token: tokens.viewer })));
         });
-        asked.on('error', fail).end();
+        asked.on('error', fail).end(body);
     });
 }
 
 test('the daemon works behind nginx with the configuration from deploy/proxy',
     { skip: skip || (existsSync(NGINX) ? false : 'nginx is not installed') }, async () => {
-    await behindProxy('--tokens', tokensFile);
+    await behindProxy('--tokens', tokensFile, '--import');
     const port = await freePort(), nginx = await startNginx(port);
     try {
         assert.equal(await throughNginx(port, '/'), 200);
@@ -518,6 +519,8 @@ test('the daemon works behind nginx with the configuration from deploy/proxy',
         };
         assert.equal(await throughNginx(port, '/stream', null, { ...upgrade, Origin: 'https://plant.example' }), 101);
         assert.equal(await throughNginx(port, '/stream', null, { ...upgrade, Origin: 'https://evil.example' }), 403);
+        assert.equal(await throughNginx(port, '/api/v1/import/upload?name=large.obj', tokens.engineer, { Origin: 'https://plant.example' },
+            Buffer.alloc(2 << 20, 'v 0 0 0\n')), 200, 'an upload of 2 MB');
         await plant.daemon.stop();
         // Starts a daemon without --behind-proxy: it refuses requests that nginx forwards, because their host name is unknown
         // to it, and grants the proxy no rights.
