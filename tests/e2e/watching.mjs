@@ -105,6 +105,10 @@ test('prometheus-add keeps the file\'s other jobs, and scraping works with a sel
             assert.ok(config.includes(line), line);
         shell(`${add} one`);
         assert.equal(readFileSync(etc('prometheus/prometheus.yml'), 'utf8'), config, 'a second run changes nothing');
+        const rules = etc('prometheus/plantcast-rules.yml'), edited = `${readFileSync(rules, 'utf8')}# edited\n`;
+        writeFileSync(rules, edited);
+        assert.match(shell(`${add} one 2>&1`), /plantcast-rules\.yml differs from the rules of this version and was not replaced/);
+        assert.equal(readFileSync(rules, 'utf8'), edited, 'rules that a person edited stay');
         assert.equal(statSync(etc('prometheus/plantcast-one.token')).mode & 0o077, 0);
         // deletes the token file in Prometheus's folder, as on a new machine on which only the plant was restored; the command
         // must make it again
