@@ -80,6 +80,28 @@ test('plantcast init changes no existing file, and gives the next plant another 
     assert.ok(!existsSync(etc('four')));
 });
 
+test('plantcast init replaces a missing certificate, and keeps the key and the authority that are there', { skip }, () => {
+    const tls = (name) => readFileSync(etc('two/tls', name), 'utf8'), names = ['ca.key', 'ca.pem', 'privkey.pem'];
+    const before = names.map(tls), fullchain = tls('fullchain.pem'), tokens = readFileSync(etc('two/tokens'), 'utf8');
+    rmSync(etc('two/tls/fullchain.pem'));
+    assert.match(init('two', '--host', 'other.example').err, /the authority in .*two\/tls cannot sign a certificate for other\.example/);
+    assert.ok(!existsSync(etc('two/tls/fullchain.pem')));
+    const { code, err } = init('two');
+    assert.equal(code, 0, err);
+    assert.deepEqual([names.map(tls), readFileSync(etc('two/tokens'), 'utf8')], [before, tokens]);
+    assert.notEqual(tls('fullchain.pem'), fullchain);
+    assert.equal(spawnSync('openssl', ['verify', '-CAfile', etc('two/tls/ca.pem'), etc('two/tls/fullchain.pem')]).status, 0);
+    const openssl = (...args) => spawnSync('openssl', args, { encoding: 'utf8' }).stdout;
+    assert.equal(openssl('x509', '-in', etc('two/tls/fullchain.pem'), '-noout', '-pubkey'),
+        openssl('pkey', '-in', etc('two/tls/privkey.pem'), '-pubout'), 'the certificate is for the key that stays');
+    for (const name of ['privkey.pem', 'fullchain.pem'])
+        rmSync(etc('two/tls', name));
+    rmSync(etc('two/tokens'));
+    assert.equal(init('two').code, 0);
+    assert.deepEqual([mode(etc('two/tls/privkey.pem')), mode(etc('two/tokens')), tls('ca.pem')], ['640', '640', before[1]]);
+    assert.deepEqual(readdirSync(etc()).sort(), ['one', 'three', 'two'], 'no temporary folder stays');
+});
+
 test('a certificate renewed by certbot is copied to the plants that name it', { skip }, () => {
     const lineage = join(root, 'live/plant.example');
     mkdirSync(lineage, { recursive: true });
