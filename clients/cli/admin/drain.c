@@ -13,7 +13,7 @@
 #include "clients/cli/commands.h"
 
 /* WAIT_S: seconds to wait for the daemon: 2 until load balancers send it no new sessions, 10 to close its sessions, 1 in
-   reserve; LOOK_US: microseconds between checks whether the daemon is done */
+   reserve; LOOK_US: microseconds between checks whether the daemon has exited */
 enum { WAIT_S = 13, LOOK_US = 50000 };
 
 static void print_usage(FILE *out)
@@ -21,10 +21,10 @@ static void print_usage(FILE *out)
     fputs("usage: plantcast drain PID [--wait SECONDS]\n"
           "\n"
           "Sends SIGUSR1 to the daemon with process ID PID, which moves its sessions to other daemons within 12 s.\n"
-          "Returns when all sessions have moved or the daemon has exited.\n"
+          "Returns after the time given with --wait, or when the daemon has exited.\n"
           "Intended for the preStop hook of a container and for ExecStop= of a systemd unit.\n"
           "\n"
-          "  --wait SECONDS  maximum time to wait until all sessions have moved; 0: do not wait (default: 13)\n",
+          "  --wait SECONDS  time to wait after the signal; 0: do not wait (default: 13, which is enough for all sessions to move)\n",
           out);
 }
 
