@@ -9,6 +9,7 @@
 
 #include "base/mem.h"
 #include "base/system/service_manager.h"
+#include "base/system/standard_output.h"
 #include "plant/models/model_check.h"
 #include "preprocess/child/child_self.h"
 #include "preprocess/convert/convert.h"
@@ -321,11 +322,11 @@ int main(int argc, char **argv)
         return status;
     if (options.help) {
         fputs(usage, stdout);
-        return 0;
+        return standard_output_end("plantcast-prep", 0);
     }
     catch_signals();
     bool good = options.diff ? run_diff(&options, &diag) : run_plant(&options, argv, &diag);
     diag_print(&diag, stderr);
     diag_finish(&diag);
-    return good && fflush(stdout) == 0 ? 0 : 1;
+    return standard_output_end("plantcast-prep", good ? 0 : 1);
 }

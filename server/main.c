@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "base/system/service_manager.h"
+#include "base/system/standard_output.h"
 #include "net/handed_socket.h"
 #include "server.h"
 #include "version.h"
@@ -467,13 +468,13 @@ int main(int argc, char **argv)
     for (int option; (option = getopt_long(argc, argv, "", options, NULL)) != -1;) {
         int code = take_option(option, &params, &task);
         if (code >= 0)
-            return code;
+            return standard_output_end("plantcastd", code);
     }
     if (optind + 1 != argc)
         return usage_error("expected one plant file, found", optind == argc ? "none" : argv[optind + 1]);
     params.plant_path = argv[optind];
     if (task != server_run)
-        return task(&params);
+        return standard_output_end("plantcastd", task(&params));
     char handed[HANDED_ADDRESS_BYTES];
     params.socket_fd = service_take_socket();
     if (params.socket_fd >= 0 && handed_socket_find(params.socket_fd, handed, &params.port)) {

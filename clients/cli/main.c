@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/system/standard_output.h"
 #include "clients/link/daemon.h"
 #include "commands.h"
 
@@ -73,7 +74,7 @@ static void print_usage(FILE *out)
           out);
 }
 
-int main(int argc, char **argv)
+static int run_command(int argc, char **argv)
 {
     struct daemon_access access;
     if (argc < 2) {
@@ -92,4 +93,9 @@ int main(int argc, char **argv)
     fprintf(stderr, "plantcast: '%s' is not a command\n", argv[1]);
     print_usage(stderr);
     return 2;
+}
+
+int main(int argc, char **argv)
+{
+    return standard_output_end("plantcast", run_command(argc, argv));
 }

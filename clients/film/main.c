@@ -3,6 +3,7 @@
    command. */
 #include <string.h>
 
+#include "base/system/standard_output.h"
 #include "clients/link/daemon.h"
 #include "commands.h"
 
@@ -11,5 +12,5 @@ int main(int argc, char **argv)
     struct daemon_access access;
     if (!daemon_take_options(&argc, argv, &access))
         return 2;
-    return !strcmp(argv[0], "verify") ? command_verify(argc, argv) : command_clip(&access, argc, argv);
+    return standard_output_end("plantcast", !strcmp(argv[0], "verify") ? command_verify(argc, argv) : command_clip(&access, argc, argv));
 }

@@ -3,9 +3,10 @@
  * `plantcast nodes` run this program; the name it is run under (argv[0]) selects the command. */
 #include <string.h>
 
+#include "base/system/standard_output.h"
 #include "preprocess/import/commands.h"
 
 int main(int argc, char **argv)
 {
-    return !strcmp(argv[0], "nodes") ? command_nodes(argc, argv) : command_import(argc, argv);
+    return standard_output_end("plantcast", !strcmp(argv[0], "nodes") ? command_nodes(argc, argv) : command_import(argc, argv));
 }

@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 
 #include "base/mem.h"
+#include "base/system/standard_output.h"
 #include "base/text/charset.h"
 #include "plant/sources/address.h"
 #include "preprocess/match/matching.h"
@@ -130,7 +131,7 @@ int main(int argc, char **argv)
             params.memory_bytes = (size_t)number << 20;
             break;
         case DRY: params.dry_run = true; break;
-        case HELP: print_usage(stdout); return 0;
+        case HELP: print_usage(stdout); return standard_output_end("plantcast match", 0);
         default: print_usage(stderr); return 2;
         }
     if (argc - optind != 2) {
@@ -144,5 +145,5 @@ int main(int argc, char **argv)
     params.tags = argv[optind + 1];
     int status = matching_run(&params);
     mem_free(plant);
-    return status;
+    return standard_output_end("plantcast match", status);
 }

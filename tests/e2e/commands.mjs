@@ -2,7 +2,7 @@
 // The command line as a client of the daemon: many commands at once over https, and through a proxy that serves the daemon
 // below a path.
 import assert from 'node:assert/strict';
-import { spawn } from 'node:child_process';
+import { spawn, spawnSync } from 'node:child_process';
 import { once } from 'node:events';
 import { appendFileSync, copyFileSync, existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { connect, createServer } from 'node:net';
@@ -170,6 +170,32 @@ test('snapshot ends if the server stops sending for a minute', { skip: skip || l
     const { code, err, saved } = await saveCutOff(t, 'Content-Length: 5000\r\n', true);
     assert.deepEqual([code, String(saved)], [1, 'the old picture']);
     assert.match(err, /the server has stopped sending/);
+});
+
+// Imports two readings of each tag, which are one minute old.
+async function record(...tags) {
+    const file = join(plant.folder, 'points.csv'), from = Math.floor(Date.now() / 1000) - 60;
+    writeFileSync(file, `Tag,Time,Value\n${tags.map((tag) => `${tag},${from},20\n${tag},${from + 1},21\n`).join('')}`);
+    const { code, err } = await run('history', 'import', plant.file, file);
+    assert.equal(code, 0, err);
+}
+
+test('a command fails if its output cannot be written', { skip, timeout: 100000 }, async () => {
+    await plant.startDaemon();
+    await record('TI-1');
+    const url = `http://127.0.0.1:${plant.port}/`, model = join(plant.folder, 'box.gltf'), tokens = join(plant.folder, 'unprinted');
+    const toFull = (program, ...args) => spawnSync('sh', ['-c', 'exec "$@" >/dev/full', 'sh', join(BIN, program), ...args],
+        { encoding: 'utf8' });
+    for (const [program, ...args] of [['plantcast', '--help'], ['plantcast', 'history', 'export', plant.file, '--tags', 'TI-1'],
+        ['plantcast', 'tags', url], ['plantcast', 'snapshot', url, '--size', '64x64', '--pick', '32,32'], ['plantcast', 'nodes', model],
+        ['plantcast', 'match', '--help'], ...(noFilms ? [] : [['plantcast', 'clip', '--help']]), ['plantcastd', '--check', plant.file],
+        ['plantcastd', '--version'], ['plantcast-prep', '--help'],
+        ['plantcast', 'token', 'add', tokens, '--role', 'viewer', '--name', 'x']]) {
+        const { status, stderr } = toFull(program, ...args), what = `${program} ${args.join(' ')}: ${stderr}`;
+        assert.equal(status, 1, what);
+        assert.match(stderr, /: standard output could not be written(: No space left on device)?\n$/, what);
+    }
+    assert.equal(readFileSync(tokens, 'utf8'), '', 'no token stays that nobody has seen');
 });
 
 const film = (url, ...more) => ['clip', url, '-o', join(plant.folder, 'film.mp4'), '--from', '-20s', '--to', '-10s', '--speed', '10',

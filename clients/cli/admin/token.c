@@ -148,6 +148,30 @@ static bool has_name(const char *lines, const char *name)
     return false;
 }
 
+static int take_back(const char *path, const char *name)
+{
+    char *old = read_file(path, false);
+    struct text text = { 0 };
+    int found = 0, result = 1;
+    for (const char *line = old; line && *line;) {
+        struct token_holder holder;
+        const char *why;
+        size_t n = strcspn(line, "\n") + (line[strcspn(line, "\n")] == '\n');
+        bool this_one = tokens_parse_line(line, &holder, &why) == 1 && !strcmp(holder.name, name);
+        found += this_one;
+        if (!this_one)
+            text_add_bytes(&text, line, n);
+        line += n;
+    }
+    if (old && !found)
+        fail_at(path, "this token file has no token with that name: `plantcast token list` prints the names");
+    else if (old)
+        result = write_file(path, &text);
+    text_finish(&text);
+    mem_free(old);
+    return result;
+}
+
 static int add_token(const char *path, struct token_holder *holder)
 {
     char token[TOKEN_MAX_CHARS + 1], *old = read_file(path, true);
@@ -165,8 +189,11 @@ static int add_token(const char *path, struct token_holder *holder)
         tokens_print_line(&text, holder);
         result = write_file(path, &text);
     }
-    if (result == 0)
-        puts(token);
+    if (result == 0 && (puts(token) == EOF || fflush(stdout) != 0)) {
+        fail_at(path, "the new token could not be printed and was removed again");
+        take_back(path, holder->name);
+        result = 1;
+    }
     text_finish(&text);
     mem_free(old);
     return result;
@@ -202,30 +229,6 @@ static int list(const char *path)
         line += strcspn(line, "\n");
         line += *line == '\n';
     }
-    mem_free(old);
-    return result;
-}
-
-static int take_back(const char *path, const char *name)
-{
-    char *old = read_file(path, false);
-    struct text text = { 0 };
-    int found = 0, result = 1;
-    for (const char *line = old; line && *line;) {
-        struct token_holder holder;
-        const char *why;
-        size_t n = strcspn(line, "\n") + (line[strcspn(line, "\n")] == '\n');
-        bool this_one = tokens_parse_line(line, &holder, &why) == 1 && !strcmp(holder.name, name);
-        found += this_one;
-        if (!this_one)
-            text_add_bytes(&text, line, n);
-        line += n;
-    }
-    if (old && !found)
-        fail_at(path, "this token file has no token with that name: `plantcast token list` prints the names");
-    else if (old)
-        result = write_file(path, &text);
-    text_finish(&text);
     mem_free(old);
     return result;
 }
