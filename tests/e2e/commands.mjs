@@ -180,6 +180,25 @@ async function record(...tags) {
     assert.equal(code, 0, err);
 }
 
+test('history export continues after a tag that the plant lacks, and reads tag names from a file', { skip }, async () => {
+    await record('TI-1', 'TI-2');
+    const names = join(plant.folder, 'names'), lists = (list) => run('history', 'export', plant.file, '--tags', list);
+    const tags = (out) => [...new Set(out.match(/^TI-\d(?=,)/gm))];
+    writeFileSync(names, 'TI-1\r\n\nGONE\nTI-2\n');
+    for (const list of ['TI-1,GONE,TI-2', `@${names}`]) {
+        const { code, out, err } = await lists(list);
+        assert.deepEqual([code, tags(out), err], [1, ['TI-1', 'TI-2'], `plantcast: ${plant.file}: the plant has no tag 'GONE'\n`]);
+    }
+    writeFileSync(names, 'TI-2');
+    const { code, out, err } = await lists(`@${names}`);
+    assert.deepEqual([code, tags(out), err], [0, ['TI-2'], '']);
+    writeFileSync(names, '\n');
+    for (const [list, why] of [[`@${names}`, /no tag names/], ['', /no tag names/], [`@${names}.csv`, /No such file/]]) {
+        const wrong = await lists(list);
+        assert.deepEqual([wrong.code, why.test(wrong.err)], [1, true], wrong.err);
+    }
+});
+
 test('a command fails if its output cannot be written', { skip, timeout: 100000 }, async () => {
     await plant.startDaemon();
     await record('TI-1');

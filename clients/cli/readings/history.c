@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* `plantcast history import|export`: reads and writes recorded series as CSV. */
+#include <errno.h>
 #include <getopt.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,6 +8,7 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "base/text/text.h"
 #include "clients/cli/commands.h"
 #include "history/history.h"
 #include "history/import.h"
@@ -14,6 +16,8 @@
 #include "history/series_text.h"
 #include "base/text/timestamp.h"
 #include "plant/parse/number.h"
+
+enum { NAMES_BYTES = 64 << 20 }; /* largest file of --tags */
 
 struct history_options {
     const char *plant, *folder, *csv, *tags, *from, *to, *start, *unit, *longest_gap, *encoding;
@@ -24,7 +28,7 @@ static void print_usage(FILE *out)
 {
     fputs("usage: plantcast history import PLANT.yaml FILE.csv [--folder DIR] [--start TIME [--unit ms|s|min|h]]\n"
           "                                [--longest-gap DURATION] [--encoding NAME]\n"
-          "       plantcast history export PLANT.yaml --tags A,B [--from TIME] [--to TIME] [--points N] [--folder DIR]\n"
+          "       plantcast history export PLANT.yaml --tags A,B|@FILE [--from TIME] [--to TIME] [--points N] [--folder DIR]\n"
           "\n"
           "`import` adds readings to the recorded history of a plant, for example older ones. The daemon can keep running.\n"
           "FILE.csv has the columns Tag, Time, Value and optionally Quality and Unit,\n"
@@ -38,6 +42,7 @@ static void print_usage(FILE *out)
           "If any row has an error, nothing is imported, and all errors are printed with line and column.\n"
           "\n"
           "`export` prints recorded readings as CSV that `import` can read (default: those of the last hour).\n"
+          "Exit status: 1 if the plant lacks one of the tags, or its readings cannot be read; the other tags are still printed.\n"
           "\n"
           "  --folder DIR     folder of recorded readings (default: the folder given in the plant file, or PLANT.history;\n"
           "                   for the service plantcastd@NAME: /var/lib/plantcast/NAME/history)\n"
@@ -49,6 +54,7 @@ static void print_usage(FILE *out)
           "                   else ten times the median spacing of the tag's readings (of all other tags' readings,\n"
           "                   if the tag has only two)\n"
           "  --encoding NAME  character encoding of FILE.csv, such as GB18030 or Windows-1251 (default: detected)\n"
+          "  --tags A,B|@FILE  tags to export: names separated by commas, or a file with one name per line\n"
           "  --from, --to TIME  start and end of the period to export (default: the last hour)\n"
           "  --points N       maximum number of rows for each tag (default: 20000). If there are more\n"
           "                   readings, `export` prints the lowest, highest and mean value of short intervals\n"
@@ -163,6 +169,7 @@ static int run_import(const struct history_options *options, const struct plant 
 
 /* --- export --------------------------------------------------------------------------------------------------------------------- */
 
+/* Prints the readings of a tag. Returns false if the readings cannot be read or, with ferror(stdout), printed. */
 static bool export_tag(struct history_reader *reader, const struct plant_tag *tag, int64_t from_us, int64_t to_us, int points,
                        int *was_buckets)
 {
@@ -175,18 +182,30 @@ static bool export_tag(struct history_reader *reader, const struct plant_tag *ta
     }
     if (good)
         series_text_csv(&text, tag->name, tag->unit, &series);
-    if (text.at)
-        fwrite(text.at, 1, text.length, stdout);
+    good = good && fwrite(text.at ? text.at : "", 1, text.length, stdout) == text.length;
     text_finish(&text);
     history_series_finish(&series);
     return good;
+}
+
+/* Returns the tag names that --tags gives, and their separators: commas, or line ends if `option` is '@' and the path of a file.
+   Returns NULL with the reason printed if this file cannot be read. */
+static char *read_names(const char *option, const char **separators)
+{
+    size_t bytes;
+    bool is_file = *option == '@';
+    char *names = is_file ? text_read_file(option + 1, NAMES_BYTES, &bytes) : mem_strdup(option);
+    if (!names)
+        fprintf(stderr, "plantcast: --tags %s: %s\n", option, strerror(errno));
+    *separators = is_file ? "\r\n" : ",";
+    return names;
 }
 
 static int run_export(const struct history_options *options, const struct plant *plant, const char *folder, struct log *log)
 {
     int64_t now_us = clock_utc_ns() / 1000, to_us = now_us, from_us;
     if (!options->tags)
-        return wrong("--tags: expected tag names separated by commas, found", "none");
+        return wrong("--tags: expected tag names separated by commas, or @FILE, found", "none");
     if (options->to && !timestamp_parse(options->to, now_us, &to_us))
         return wrong("--to: expected " TIMESTAMP_FORMS ", found", options->to);
     from_us = to_us - 3600 * US_PER_S;
@@ -194,17 +213,24 @@ static int run_export(const struct history_options *options, const struct plant 
         return wrong("--from: expected " TIMESTAMP_FORMS ", found", options->from);
     if (from_us >= to_us)
         return wrong("--from: expected a time before --to, found", options->from ? options->from : "");
+    const char *separators;
+    char *names = read_names(options->tags, &separators), *rest = names;
+    if (!names)
+        return 1;
     struct history_reader *reader = history_reader_create(log, folder);
     history_reader_show_by(reader, plant);
-    char *names = mem_strdup(options->tags), *rest = names;
     int was_buckets = -1;
     bool good = true;
-    for (char *tag; good && (tag = strsep(&rest, ","));) {
+    for (char *tag; !ferror(stdout) && (tag = strsep(&rest, separators));) {
         int index = plant_find_tag(plant, tag);
-        good = index >= 0;
-        if (!good)
+        if (*tag && index < 0)
             fprintf(stderr, "plantcast: %s: the plant has no tag '%s'\n", options->plant, tag);
-        good = good && export_tag(reader, &plant->tags[index], from_us, to_us, options->points, &was_buckets);
+        if (*tag)
+            good = index >= 0 && export_tag(reader, &plant->tags[index], from_us, to_us, options->points, &was_buckets) && good;
+    }
+    if (was_buckets < 0 && good) {
+        fprintf(stderr, "plantcast: --tags %s: this list has no tag names\n", options->tags);
+        good = false;
     }
     mem_free(names);
     history_reader_destroy(&reader);
