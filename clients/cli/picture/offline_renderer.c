@@ -133,10 +133,18 @@ bool offline_renderer_open_plant(struct offline_renderer *offline, struct snapsh
     return true;
 }
 
+static void open_loop_checks(struct offline_renderer *offline, const struct snapshot_options *options)
+{
+    char *folder = options->history ? mem_strdup(options->history) : plant_recorded_folder(offline->plant);
+    offline->loop_checks = loop_checks_open(offline->log, offline->plant, folder, NULL);
+    mem_free(folder);
+}
+
 int offline_renderer_open(struct offline_renderer *offline, struct snapshot_options *options, struct view *view)
 {
     if (!offline_renderer_open_plant(offline, options))
         return 1;
+    open_loop_checks(offline, options);
     if (options->view && !saved_view_add_from_plant(options, offline->log, offline->plant))
         return 1;
     return add_colormaps(offline, options) && offline_renderer_take_view(offline, options, view) ? 0 : 2;
@@ -187,7 +195,7 @@ struct frame *offline_renderer_draw(struct offline_renderer *offline, const stru
         frame->clock_unset = !view->at_us && !clock_utc_is_set();
     }
     if (frame && !options->no_overlay)
-        overlay_draw(frame, offline->scene, offline->snapshot, NULL);
+        overlay_draw(frame, offline->scene, offline->snapshot, offline->loop_checks);
     return frame;
 }
 
@@ -214,6 +222,7 @@ void offline_renderer_close(struct offline_renderer *offline)
     field_destroy(&offline->field);
     workers_destroy(&offline->workers);
     snapshot_destroy(&offline->snapshot);
+    loop_checks_close(&offline->loop_checks);
     baselines_destroy(&offline->baselines);
     scene_destroy(&offline->scene);
     plant_destroy(&offline->plant);

@@ -4,6 +4,7 @@
 #ifndef CLI_PICTURE_OFFLINE_RENDERER_H
 #define CLI_PICTURE_OFFLINE_RENDERER_H
 #include "history/history.h"
+#include "loopcheck/loop_checks.h"
 #include "access/access.h"
 #include "render/split_view.h"
 #include "snapshot.h"
@@ -16,6 +17,7 @@ struct offline_renderer {
     struct scene *scene;
     struct snapshot *snapshot; /* readings to draw */
     struct baselines *baselines;
+    struct loop_checks *loop_checks; /* recorded loop checks, for pictures that mark unproven tags; NULL: no tag is marked */
     /* number of times that the readings in `snapshot` were replaced; a changed number makes `field` compute its values again */
     uint32_t turn;
     struct workers *workers;
@@ -28,11 +30,11 @@ struct offline_renderer {
     int64_t first_us, last_us; /* first and last recorded instant */
 };
 
-/* Opens the plant, its prepared files (made by plantcast-prep), the values to show and the baseline (readings to compare them
-   with), and sets *view from options->args. Returns 0, or the exit code with the reason printed. Call offline_renderer_close()
-   in both cases. */
+/* Opens the plant, its prepared files (made by plantcast-prep), the values to show, the baseline (readings to compare them with) and the
+   recorded loop checks, and sets *view from options->args. Returns 0, or the exit code with the reason printed. Call
+   offline_renderer_close() in both cases. */
 int offline_renderer_open(struct offline_renderer *offline, struct snapshot_options *options, struct view *view);
-/* Like offline_renderer_open(), but without a view. Returns false with the reason printed. */
+/* Like offline_renderer_open(), but without loop checks and a view. Returns false with the reason printed. */
 bool offline_renderer_open_plant(struct offline_renderer *offline, struct snapshot_options *options);
 /* Sets *view from options->args. Returns false, with the reason printed, if they are invalid. */
 bool offline_renderer_take_view(const struct offline_renderer *offline, const struct snapshot_options *options, struct view *view);
