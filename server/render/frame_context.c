@@ -13,11 +13,12 @@ const struct model_level *frame_level(const struct frame_context *context, int a
 
 bool frame_shows_selected(const struct frame_context *context)
 {
+    const struct visibility *visibility = &context->view->visibility;
     int selected = context->view->selected_asset;
-    for (size_t i = 0; i < context->visible_count && selected >= 0; i++)
-        if (context->visible[i] == selected)
-            return true;
-    return false;
+    if (selected < 0 || visibility_of(visibility, selected) == ASSET_HIDDEN)
+        return false;
+    const struct scene_asset *asset = &context->gpu_scene->scene->assets[selected];
+    return view_constants_sees(&context->constants, asset) && !clip_drops(&visibility->clip, asset->bounds_min_m, asset->bounds_max_m);
 }
 
 int frame_triangles(const struct frame_context *context)

@@ -37,7 +37,7 @@ struct frame_context {
 
 /* Returns the level of detail that the frame plan chose for an asset. */
 const struct model_level *frame_level(const struct frame_context *context, int asset);
-/* Returns whether view->selected_asset is among the visible assets. */
+/* Returns whether view->selected_asset gets an outline: true if it is shown or ghosted, in the frame, and not cut away. */
 bool frame_shows_selected(const struct frame_context *context);
 /* Returns the number of triangles in the planned levels of detail of all visible assets. */
 int frame_triangles(const struct frame_context *context);

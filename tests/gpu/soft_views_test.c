@@ -405,7 +405,8 @@ TEST(test_ghosts)
         stand_look(&stand, i % 12, &view);
         view.dark = i % 2;
         view.camera.height_m = i % 12 == 6 ? 6 : 0;
-        view.selected_asset = i == 7 ? 0 : -1;
+        /* asset 0 is shown in frame 7; asset 1 is a ghost, which is outlined, too */
+        view.selected_asset = i == 7 ? 0 : i % 3 == 1 ? 1 : -1;
         asset_set_add(&view.visibility.ghosts, i % 4);
         asset_set_add(&view.visibility.ghosts, 1);
         if (i % 4 == 3)

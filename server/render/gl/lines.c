@@ -53,9 +53,7 @@ double lines_outline_px(const struct view *view)
 
 void lines_draw_outline(struct gl_lines *lines, const struct frame_context *context)
 {
-    int asset = context->view->selected_asset;
-    if (asset < 0 || visibility_of(&context->view->visibility, asset) == ASSET_HIDDEN ||
-        !view_constants_sees(&context->constants, &context->gpu_scene->scene->assets[asset]))
+    if (!frame_shows_selected(context))
         return;
     gl_pass_enter("outline");
     if (!render_texture_fit(&lines->mask, GL_R8, GL_COLOR_ATTACHMENT0, context->target->width_px, context->target->height_px)) {
@@ -65,7 +63,8 @@ void lines_draw_outline(struct gl_lines *lines, const struct frame_context *cont
     glClearNamedFramebufferfv(lines->mask.framebuffer, GL_COLOR, 0, (float[4]){ 0 });
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, lines->mask.framebuffer);
     glDisable(GL_DEPTH_TEST);
-    gpu_scene_draw_depth(context->gpu_scene, context->constants.clip_from_plant, &context->view->visibility.clip, asset, 0, true);
+    gpu_scene_draw_depth(context->gpu_scene, context->constants.clip_from_plant, &context->view->visibility.clip,
+                         context->view->selected_asset, 0, true);
     glBindTextureUnit(0, lines->mask.texture);
     glProgramUniform1f(lines->outline_program, 0, (float)lines_outline_px(context->view));
     draw_over(lines, context, lines->outline_program);
