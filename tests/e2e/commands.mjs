@@ -215,6 +215,7 @@ test('a command fails if its output cannot be written', { skip, timeout: 100000 
         assert.match(stderr, /: standard output could not be written(: No space left on device)?\n$/, what);
     }
     assert.equal(readFileSync(tokens, 'utf8'), '', 'no token stays that nobody has seen');
+});
 
 test('a snapshot without a daemon marks tags that have not passed their loop check', { skip }, async () => {
     const values = join(plant.folder, 'values.csv'), history = join(plant.folder, 'checks');
