@@ -39,7 +39,7 @@ enum {
 };
 static const int64_t TICK_NS = NS_PER_S, TIDY_NS = 1200 * NS_PER_S, KEEP_NS = 60 * NS_PER_S, STEP_NS = 2 * NS_PER_S,
                      LOOK_NS = 20 * NS_PER_MS;
-/* Age in microseconds. When the daemon ends, it records again each Good reading whose newest sample is at least this old.
+/* Age in microseconds. When the daemon ends, it records again each reading that is not Bad and whose newest sample is at least this old.
    Otherwise the tag's recorded line would end at that sample. */
 static const int64_t REPEAT_US = 10 * US_PER_S;
 
@@ -79,6 +79,8 @@ struct historian {
     struct spool_rows spooled;
     char *spool_path; /* path of the previous run's spool file; NULL: there is none */
     struct month_file *file;
+    int month;       /* UTC month of the last tick; 0: no tick yet */
+    int ended_month; /* past month in which all lines ended, so its file's held rows must be deleted; 0: none */
     struct historian_queue taken;
     bool recovered, failing, stands_by, fills;
     int64_t fill_us;     /* if `fills` is true: UTC time from which on this machine lacks points, which must be read from PostgreSQL */
@@ -208,13 +210,14 @@ static void take_qualities(struct historian *historian, int64_t mono_ns, int64_t
     }
 }
 
-/* Records the Good readings whose newest sample is older than before_us, at the beginning of a month and at the end of the run.
-   So each month's file has the values at its beginning, and values hold until the daemon ends. Call it after take_qualities(). */
+/* Records the readings that are not Bad and whose newest sample is older than before_us, at the beginning of a month and at the end
+   of the run. So each month's file has the values at its beginning, and values hold until the daemon ends. Call it after
+   take_qualities(). */
 static void repeat_readings(struct historian *historian, int64_t before_us, int64_t mono_ns, int64_t utc_ns)
 {
     struct history_point newest;
     for (size_t i = 0; i < historian->snapshot->count; i++)
-        if (quality_is_good(historian->snapshot->readings[i].quality) && recorder_newest(historian->recorder, (int)i, &newest) &&
+        if (!quality_is_bad(historian->snapshot->readings[i].quality) && recorder_newest(historian->recorder, (int)i, &newest) &&
             newest.t_us < before_us)
             put_reading(historian, (int)i, mono_ns, utc_ns);
 }
@@ -361,12 +364,18 @@ static int recover(struct historian *historian)
     return error;
 }
 
-/* Closes the file of a past month. Deletes its held rows (newest samples that were not recorded), because all are recorded by now. */
-static int leave_month(struct historian *historian)
+/* Closes the month's file, because rows of month `next` follow. Keeps the file's held rows (newest samples, not recorded yet),
+   because the lines of their tags may continue in this month: a row of `next` may only be a value that its source dates in
+   another month. Deletes the held rows after a change of month, because recorder_end() has recorded their samples. The spool
+   file of the previous run has rows of a later month only after such a change. */
+static int leave_month(struct historian *historian, int next)
 {
-    int error = month_file_tidy(historian->file);
-    if (!error)
+    int month = month_file_month(historian->file), error = month_file_tidy(historian->file);
+    bool ended = month == historian->ended_month;
+    if (!error && month < next && (ended || historian->spool_path)) {
         error = month_file_clear_held(historian->file);
+        historian->ended_month = ended && !error ? 0 : historian->ended_month;
+    }
     if (!error)
         month_file_close(&historian->file);
     return error;
@@ -378,7 +387,7 @@ static int enter_month(struct historian *historian, int month)
     if (historian->file && month_file_month(historian->file) == month)
         return 0;
     if (historian->file)
-        error = leave_month(historian);
+        error = leave_month(historian, month);
     if (!error)
         historian->file = open_month(historian, month, &error);
     return error;
@@ -395,12 +404,34 @@ static size_t same_month(const struct recorder_rows *rows, size_t begin)
     return end;
 }
 
+/* Sorts rows by month, so that each month's file is opened only once. Rows of the same month keep their order. */
+static void sort_by_month(struct recorder_rows *rows)
+{
+    if (!rows->count || same_month(rows, 0) == rows->count)
+        return;
+    struct history_row *sorted = mem_array(rows->count, sizeof(*sorted));
+    size_t done = 0;
+    for (int64_t from_us = INT64_MIN, to_us; done < rows->count; from_us = to_us) {
+        int64_t first_us = INT64_MAX;
+        for (size_t i = 0; i < rows->count; i++)
+            if (rows->at[i].point.t_us >= from_us && rows->at[i].point.t_us < first_us)
+                first_us = rows->at[i].point.t_us;
+        to_us = month_begin_us(month_of(first_us) + 1);
+        for (size_t i = 0; i < rows->count; i++)
+            if (rows->at[i].point.t_us >= from_us && rows->at[i].point.t_us < to_us)
+                sorted[done++] = rows->at[i];
+    }
+    memcpy(rows->at, sorted, rows->count * sizeof(*sorted));
+    mem_free(sorted);
+}
+
 /* Writes rows to the files of their months, and removes the written rows from `rows`. held: the rows are newest samples that
    the filter has not recorded yet. */
 static int write_rows(struct historian *historian, struct recorder_rows *rows, bool held)
 {
     size_t done = 0;
     int error = 0;
+    sort_by_month(rows);
     while (done < rows->count && !error) {
         size_t end = same_month(rows, done);
         const struct history_row *at = rows->at + done;
@@ -416,12 +447,28 @@ static int write_rows(struct historian *historian, struct recorder_rows *rows, b
     return error;
 }
 
+/* Replaces held rows of past months with points. So only the files of the present month and of later ones have held rows, and a
+   past month's file needs no further end of a line after a crash. */
+static void record_old_held(struct historian *historian)
+{
+    struct recorder_rows *held = &historian->held;
+    const int64_t from_us = month_begin_us(historian->month);
+    size_t left = 0;
+    for (size_t i = 0; i < held->count; i++)
+        if (held->at[i].point.t_us >= from_us)
+            held->at[left++] = held->at[i];
+        else
+            recorder_end_tag(historian->recorder, held->at[i].tag, &historian->waiting);
+    held->count = left;
+}
+
 /* Writes the rows that were recorded in the last second. They usually belong to one month and are then written in one
    transaction. */
 static int write_second(struct historian *historian)
 {
     struct recorder_rows *rows = &historian->waiting, *held = &historian->held;
     recorder_held(historian->recorder, held);
+    record_old_held(historian);
     if (!rows->count && !held->count)
         return 0;
     const struct history_row *first = rows->count ? rows->at : held->at;
@@ -436,6 +483,23 @@ static int write_second(struct historian *historian)
     }
     int error = write_rows(historian, rows, false);
     return error ? error : write_rows(historian, held, true);
+}
+
+/* Deletes the held rows of the month in which all lines ended. leave_month() has done that, unless the file of a later month was
+   already open: a standby, or a source, may have a clock ahead of this machine's. */
+static int clear_ended_month(struct historian *historian)
+{
+    int month = historian->ended_month, error = 0;
+    char name[MONTH_NAME_BYTES];
+    if (!month || !historian->file || month_file_month(historian->file) == month)
+        return 0;
+    month_name(month, name);
+    char *path = mem_printf("%s/%s", historian->folder, name);
+    if (access(path, F_OK) == 0 && !(error = enter_month(historian, month)))
+        error = month_file_clear_held(historian->file);
+    mem_free(path);
+    historian->ended_month = error ? month : 0;
+    return error;
 }
 
 static void measure_free(struct historian *historian)
@@ -523,6 +587,8 @@ static int write_all(struct historian *historian, int64_t mono_ns, int64_t utc_n
         error = recover(historian);
     if (!error)
         error = write_second(historian);
+    if (!error)
+        error = clear_ended_month(historian);
     if (!error)
         error = apply_retention(historian, mono_ns, utc_ns);
     if (error == -EBADMSG && historian->file)
@@ -648,13 +714,17 @@ static void tick(struct historian *historian, bool last)
         take_qualities(historian, mono_ns, utc_ns);
     if (step_ns)
         note_step(historian, utc_ns, step_ns);
-    bool new_month = historian->file && month_file_month(historian->file) != month_of(utc_ns / 1000);
-    if (new_month)
+    int month = month_of(utc_ns / 1000);
+    bool new_month = historian->month && historian->month != month;
+    if (new_month) {
         /* At the end of a month, records every tag's newest sample in the old month's file. A tag's line that continues in the
            next month then starts from a point on disk, not from a sample that is only in memory and would be lost in a crash. */
         recorder_end(historian->recorder, &historian->waiting);
+        historian->ended_month = historian->month;
+    }
+    historian->month = month;
     if (!historian->stands_by && (new_month || last))
-        repeat_readings(historian, new_month ? month_begin_us(month_of(utc_ns / 1000)) : utc_ns / 1000 - REPEAT_US, mono_ns, utc_ns);
+        repeat_readings(historian, new_month ? month_begin_us(month) : utc_ns / 1000 - REPEAT_US, mono_ns, utc_ns);
     if (last && historian->loss.count)
         end_loss(historian);
     if (last)
@@ -740,7 +810,7 @@ static void *historian_main(void *arg)
     tick(historian, true);
     if (historian->file)
         month_file_tidy(historian->file);
-    if (historian->file && historian->next)
+    if (historian->file && historian->next && enter_month(historian, historian->month) == 0)
         month_file_clear_held(historian->file);
     if (historian->failing || historian->waiting.count)
         spool(historian);

@@ -272,11 +272,17 @@ CASE(a_standby_records_what_time_alone_changes)
     core_samples_end(&link);
 }
 
-/* Writes a sample of tag 0 that its source dates utc_ns, a time in the past. */
-static void write_old(struct historian_setup *s, double value, int64_t utc_ns)
+/* Writes a Good sample of one tag. */
+static void write_one(struct historian_setup *s, int tag, double value)
+{
+    store_write(s->store, &(struct sample){ tag, value, QUALITY_GOOD }, 1, clock_mono_ns(), clock_utc_ns());
+}
+
+/* Writes a sample of a tag that its source dates utc_ns, a time in the past. */
+static void write_old(struct historian_setup *s, int tag, double value, int64_t utc_ns)
 {
     int64_t age_ns = clock_utc_ns() - utc_ns;
-    store_write(s->store, &(struct sample){ 0, value, QUALITY_GOOD }, 1, clock_mono_ns() - age_ns, utc_ns);
+    store_write(s->store, &(struct sample){ tag, value, QUALITY_GOOD }, 1, clock_mono_ns() - age_ns, utc_ns);
 }
 
 /* Sets the tags so that their readings never become stale, as with OPC UA, whose servers send only changes. */
@@ -289,16 +295,21 @@ static void never_stale(struct historian_setup *s)
     s->tags = history_tags(s->plant);
 }
 
-/* Waits until the newest recorded reading of tag 0 has this quality. Returns false if it has not after 30 s. */
-static bool comes_to(struct historian_setup *s, uint32_t quality)
+/* Waits until the newest recorded reading of a tag has this quality. Returns false if it has not after 30 s. */
+static bool tag_comes_to(struct historian_setup *s, int tag, uint32_t quality)
 {
     struct snapshot *snapshot = test_snapshot(TAGS);
     int64_t end_ns = clock_mono_ns() + 30 * NS_PER_S;
     do {
         sleep_ns(50 * NS_PER_MS);
         look(s, clock_utc_ns(), snapshot);
-    } while (snapshot->readings[0].quality != quality && clock_mono_ns() < end_ns);
-    return snapshot->readings[0].quality == quality;
+    } while (snapshot->readings[tag].quality != quality && clock_mono_ns() < end_ns);
+    return snapshot->readings[tag].quality == quality;
+}
+
+static bool comes_to(struct historian_setup *s, uint32_t quality)
+{
+    return tag_comes_to(s, 0, quality);
 }
 
 /* An OPC UA server dates a value by its last change. After a lost connection or a restart of the daemon it sends the same value
@@ -309,7 +320,7 @@ CASE(a_value_with_an_old_time_is_good_again)
     int64_t changed_ns = clock_utc_ns() - 3600 * NS_PER_S;
     never_stale(s);
     start(s);
-    write_old(s, 42, changed_ns);
+    write_old(s, 0, 42, changed_ns);
     assert_true(comes_to(s, QUALITY_GOOD));
     store_tags_dead(s->store, &(int){ 0 }, 1, clock_mono_ns());
     assert_true(comes_to(s, QUALITY_BAD_COMMUNICATION_ERROR));
@@ -317,7 +328,7 @@ CASE(a_value_with_an_old_time_is_good_again)
        before the change */
     sleep_ns(1200 * NS_PER_MS);
     int64_t lost_ns = clock_utc_ns();
-    write_old(s, 42, changed_ns);
+    write_old(s, 0, 42, changed_ns);
     assert_true(comes_to(s, QUALITY_GOOD));
     look(s, lost_ns - NS_PER_S / 2, snapshot);
     assert_int_equal(snapshot->readings[0].quality, QUALITY_BAD_COMMUNICATION_ERROR);
@@ -326,7 +337,7 @@ CASE(a_value_with_an_old_time_is_good_again)
     atomic_fetch_add(&clock_off_ns, 600 * NS_PER_S);
     s->store = test_store(s->plant);
     start(s);
-    write_old(s, 42, changed_ns);
+    write_old(s, 0, 42, changed_ns);
     assert_true(comes_to(s, QUALITY_GOOD));
     look(s, clock_utc_ns(), snapshot);
     assert_true(snapshot->readings[0].value == 42);
@@ -334,8 +345,61 @@ CASE(a_value_with_an_old_time_is_good_again)
     assert_int_equal(snapshot->readings[0].quality, QUALITY_BAD_NO_COMMUNICATION);
 }
 
-/* After its first sample, tag 0 gets none, while tag 1 gets samples all the time. The history of tag 0 must continue until the
-   daemon ends, also into the file of the next month. */
+static const int64_t MONTH_NS = 31 * 86400 * NS_PER_S;
+
+/* Tag 0 gets one sample. Then a source sends a value of tag 1 that it dates a month ago, and the process is killed. After the next
+   start, the value of tag 0 must end when the process was killed. */
+CASE(a_value_of_last_month_leaves_other_lines_alone)
+{
+    struct snapshot *snapshot = test_snapshot(TAGS);
+    never_stale(s);
+    pid_t child = fork();
+    if (child == 0) {
+        start(s);
+        write_one(s, 0, 42);
+        bool good = tag_comes_to(s, 0, QUALITY_GOOD);
+        write_old(s, 1, 7, clock_utc_ns() - MONTH_NS);
+        good = good && tag_comes_to(s, 1, QUALITY_GOOD);
+        write_one(s, 2, 1);
+        _exit(good && tag_comes_to(s, 2, QUALITY_GOOD) ? 0 : 1);
+    }
+    int status;
+    waitpid(child, &status, 0);
+    assert_int_equal(status, 0);
+    int64_t killed_ns = clock_utc_ns();
+    atomic_fetch_add(&clock_off_ns, 600 * NS_PER_S);
+    start(s);
+    write_one(s, 2, 0);
+    wait_until_counted(s, "plantcast_history_good", 1);
+    historian_stop(&s->historian);
+    for (int tag = 0; tag < 2; tag++) {
+        look(s, killed_ns + 300 * NS_PER_S, snapshot);
+        assert_int_equal(snapshot->readings[tag].quality, QUALITY_BAD_NO_COMMUNICATION);
+    }
+    look(s, killed_ns - MONTH_NS + 600 * NS_PER_S, snapshot);
+    assert_int_equal(snapshot->readings[1].quality, QUALITY_GOOD);
+    assert_true(snapshot->readings[1].value == 7);
+}
+
+/* A source whose clock is a month behind sends values of tag 1 all the time. The historian must not take this for a change of
+   month, at which it records a point of each tag: the constant values of tag 0 need two. */
+CASE(a_clock_of_last_month_adds_no_points_of_other_tags)
+{
+    struct history_series series;
+    never_stale(s);
+    start(s);
+    for (int i = 0; i < 40; i++) {
+        write_one(s, 0, 42);
+        write_old(s, 1, bent(i), clock_utc_ns() - MONTH_NS);
+        sleep_ns(100 * NS_PER_MS);
+    }
+    historian_stop(&s->historian);
+    assert_in_range(points_of(s, 0, &series), 1, 2);
+    assert_true(points_around(s, 1, (clock_utc_ns() - MONTH_NS) / 1000, &series) >= 40);
+}
+
+/* After its first sample, tag 0 gets none, and neither does tag 2, whose value is Uncertain, while tag 1 gets samples all the
+   time. The histories of tags 0 and 2 must continue until the daemon ends, also into the file of the next month. */
 CASE(a_value_without_samples_holds_until_the_end)
 {
     struct snapshot *snapshot = test_snapshot(TAGS);
@@ -343,7 +407,8 @@ CASE(a_value_without_samples_holds_until_the_end)
     never_stale(s);
     atomic_fetch_add(&clock_off_ns, july_ns - 3 * NS_PER_S - clock_utc_ns());
     start(s);
-    write_old(s, 42, july_ns - 20 * NS_PER_S);
+    write_old(s, 0, 42, july_ns - 20 * NS_PER_S);
+    store_write(s->store, &(struct sample){ 2, 17, QUALITY_UNCERTAIN_SENSOR_NOT_ACCURATE }, 1, clock_mono_ns(), clock_utc_ns());
     int64_t last_ns = 0;
     for (int i = 0; last_ns < july_ns + 2 * NS_PER_S; i++) {
         sleep_ns(100 * NS_PER_MS);
@@ -354,17 +419,20 @@ CASE(a_value_without_samples_holds_until_the_end)
     atomic_fetch_add(&clock_off_ns, 600 * NS_PER_S);
     s->store = test_store(s->plant);
     start(s);
-    store_write(s->store, &(struct sample){ 1, 0, QUALITY_GOOD }, 1, clock_mono_ns(), clock_utc_ns());
+    write_one(s, 1, 0);
     wait_until_counted(s, "plantcast_history_good", 1);
     historian_stop(&s->historian);
     look(s, last_ns, snapshot);
     assert_int_equal(snapshot->readings[0].quality, QUALITY_GOOD);
     assert_true(snapshot->readings[0].value == 42);
     look(s, last_ns + 300 * NS_PER_S, snapshot);
-    assert_int_equal(snapshot->readings[0].quality, QUALITY_BAD_NO_COMMUNICATION);
+    for (int tag = 0; tag < 3; tag++)
+        assert_int_equal(snapshot->readings[tag].quality, QUALITY_BAD_NO_COMMUNICATION);
     assert_int_equal(unlink(temp_path(s->folder, "history/history-2026-06.sqlite")), 0);
     look(s, last_ns, snapshot);
     assert_int_equal(snapshot->readings[0].quality, QUALITY_GOOD);
+    assert_int_equal(snapshot->readings[2].quality, QUALITY_UNCERTAIN_SENSOR_NOT_ACCURATE);
+    assert_true(snapshot->readings[2].value == 17);
 }
 
 CASE(quiet_readers_see_the_last_second)
