@@ -67,7 +67,6 @@ struct historian {
     } counters;
     struct postgres *postgres; /* thread that sends history to PostgreSQL; NULL: no database is configured */
     atomic_int error;          /* why readings cannot be recorded at the moment, as -errno; 0: they are recorded */
-    atomic_bool restored;      /* set once points that this machine lacked have been copied from PostgreSQL to its history files */
     /* --- below: used by the historian's thread only */
     struct history_tag *tags;
     struct recorder *recorder;
@@ -526,8 +525,6 @@ static int apply_retention(struct historian *historian, int64_t mono_ns, int64_t
     int error = 0;
     if (historian->file && (mono_ns - historian->tidied_ns >= TIDY_NS || month_file_waiting(historian->file) >= TIDY_ROWS)) {
         historian->tidied_ns = mono_ns;
-        if (atomic_exchange(&historian->restored, false))
-            month_file_forget_rollups(historian->file);
         error = month_file_tidy(historian->file);
     }
     if (mono_ns - historian->kept_ns >= KEEP_NS || !historian->kept_ns) {
@@ -836,12 +833,6 @@ static void add_counters(struct historian *historian, struct counters *counters)
                                               "Time of the last backup, in seconds since 1970; 0: unknown.");
 }
 
-static void on_restored(void *arg)
-{
-    struct historian *historian = arg;
-    atomic_store(&historian->restored, true);
-}
-
 static bool start_postgres(struct historian *historian, struct counters *counters, const struct postgres_owed *owed)
 {
     const struct postgres_params params = {
@@ -851,8 +842,6 @@ static bool start_postgres(struct historian *historian, struct counters *counter
         .folder = historian->folder,
         .stands_by = historian->stands_by,
         .owed = owed,
-        .restored = on_restored,
-        .arg = historian,
     };
     return !historian->plant->history.postgres.url || (historian->postgres = postgres_start(&params));
 }

@@ -76,8 +76,6 @@ int month_file_write(struct month_file *file, const struct history_row *rows, si
 /* Makes the file copy each point that is recorded or imported from now on to the outbox, in the same transaction. The outbox is
    the table of points yet to be sent to PostgreSQL (history/month_outbox.h). */
 int month_file_use_outbox(struct month_file *file);
-/* Makes the next month_file_tidy() reload the incomplete rollup buckets from the file, because another handle has imported points. */
-void month_file_forget_rollups(struct month_file *file);
 /* Moves the points written since the last call into compressed blocks by tag, and updates the rollups (minimum, maximum and
    mean of intervals). month_file_waiting() returns an estimate of the number of points not yet in blocks. */
 int month_file_tidy(struct month_file *file);

@@ -39,6 +39,9 @@ struct month_file {
     /* the chunk (list of times shared by several blocks) that was read last, kept because other blocks share its times */
     struct month_chunk *chunk;
     struct month_seconds *seconds; /* newest points, not in blocks yet, as read by this handle from the table `second` */
+    /* mark (stamp in row 0 of the table `second`) that this handle last wrote; 0: none yet. If the file has another mark, another
+       handle has moved or changed points since then. */
+    int64_t mark;
     /* number and stamp (increases with each write) of the last written row of the table `second` */
     int64_t slot, stamp;
     int64_t slot_before, stamp_before; /* `slot` and `stamp` at the start of the transaction, which end() restores after a rollback */

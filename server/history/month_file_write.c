@@ -253,11 +253,6 @@ static void reset_rollups(struct month_rollups *rollups, bool step)
         rollups->level[level] = (struct rollup){ .length_us = history_level_us[level], .step = step };
 }
 
-void month_file_forget_rollups(struct month_file *file)
-{
-    memset(file->rollups, 0, file->tag_count * sizeof(*file->rollups));
-}
-
 /* Computes the rollups from the points since the start of the hour of from_us, and from the last point before. Writes complete
    buckets to the file and leaves incomplete ones in *rollups. */
 static int roll_from(struct month_file *file, int64_t id, int64_t from_us, struct month_rollups *rollups)
@@ -398,6 +393,9 @@ static int move_seconds(struct month_file *file)
     int error = month_seconds_read(file);
     if (error)
         return error;
+    if (seconds->mark != file->mark)
+        /* the incomplete rollup buckets in memory lack the points that another handle moved or imported: reloads the buckets */
+        memset(file->rollups, 0, file->tag_count * sizeof(*file->rollups));
     int64_t id_max;
     int *tags = tags_by_id(file, &id_max);
     error = move_rows(file, seconds->rows, seconds->count, tags, id_max);
@@ -448,13 +446,28 @@ static int roll_again(struct month_file *file, int tag, int64_t id, int64_t from
     return error;
 }
 
+/* Begins a transaction that changes points in blocks. First moves the newest points of other handles to blocks, which also makes
+   those handles reload their rollup buckets. */
+static int begin_change(struct month_file *file)
+{
+    int64_t mark = 0;
+    int error = begin(file);
+    if (error)
+        return error;
+    error = month_seconds_mark(file, &mark);
+    if (!error && mark != file->mark)
+        error = move_seconds(file);
+    month_seconds_finish(file);
+    return error ? end(file, error) : 0;
+}
+
 int month_file_import(struct month_file *file, int tag, const struct history_point *points, size_t count)
 {
     int64_t id;
     if (!count)
         return 0;
-    int error = month_file_tidy(file);
-    if (error || (error = begin(file)))
+    int error = begin_change(file);
+    if (error)
         return error;
     static const struct month_chunk own = { 0 };
     error = tag_id(file, tag, &id);
@@ -509,8 +522,8 @@ int month_file_forget_gaps(struct month_file *file, int64_t from_us, int64_t to_
 {
     struct gap_points gap = { from_us, to_us, gap_quality };
     bool has_outbox = false;
-    int error = month_file_tidy(file);
-    if (error || (error = month_has_outbox(file, &has_outbox)) || (error = begin(file)))
+    int error = month_has_outbox(file, &has_outbox);
+    if (error || (error = begin_change(file)))
         return error;
     error = forget(file, SQL_FORGET_GAPS, from_us, to_us, gap_quality);
     if (!error)

@@ -15,9 +15,7 @@ enum { SECOND_COLUMNS = 4, ROW_BYTES = 930, PAGE_BYTES = 1020, ID_MAX = 1 << 22 
 
 /* --- writing ------------------------------------------------------------------------------------------------------------------ */
 
-/* Reads the mark: the stamp (increases with each write) of the newest row of the table `second` whose points were moved to
-   blocks. The mark is stored in row 0 of the table. */
-static int read_mark(struct month_file *file, int64_t *mark)
+int month_seconds_mark(struct month_file *file, int64_t *mark)
 {
     sqlite3_stmt *find = month_sql(file, SQL_MARK);
     int code = database_step(&file->db, find);
@@ -71,7 +69,7 @@ static int update_row(struct month_file *file, enum month_statement which, int64
 int month_seconds_write(struct month_file *file, struct month_row *rows, size_t count, struct month_row *held, size_t held_count)
 {
     int64_t mark = 0;
-    int error = read_mark(file, &mark);
+    int error = month_seconds_mark(file, &mark);
     if (error || count + held_count == 0)
         return error;
     /* All rows of the table `second` are free, because their points were moved to blocks, perhaps through another handle. So
@@ -101,7 +99,8 @@ int month_seconds_write(struct month_file *file, struct month_row *rows, size_t 
 int month_seconds_clear(struct month_file *file)
 {
     sqlite3_stmt *mark = month_sql(file, SQL_SET_MARK);
-    sqlite3_bind_int64(mark, 1, file->seconds->stamp);
+    file->mark = file->seconds->stamp + 1;
+    sqlite3_bind_int64(mark, 1, file->mark);
     return month_run(file, mark, "cannot mark the table `second` of the history file as empty");
 }
 
@@ -157,7 +156,7 @@ int month_seconds_read(struct month_file *file)
     int64_t mark = 0;
     if (!month_has_blocks(file))
         return 0;
-    int code, error = read_mark(file, &mark);
+    int code, error = month_seconds_mark(file, &mark);
     if (error)
         return error;
     if (mark != seconds->mark) {

@@ -15,8 +15,7 @@ struct month_row {
 
 /* The newest points, as read by a handle of a month's file from the table `second`. */
 struct month_seconds {
-    /* stamps increase with each write. mark: stamp of the newest row whose points were moved to blocks; stamp, slot: stamp and
-       number of the newest row read */
+    /* stamps increase with each write. mark: stamp in row 0 of the table; stamp, slot: stamp and number of the newest row read */
     int64_t mark, stamp, slot;
     struct month_row *rows; /* recorded points */
     /* [id of the tag in the file]: the tag's newest sample, which the recorder has not recorded yet (held); id 0: none */
@@ -28,7 +27,10 @@ struct month_seconds {
 int month_seconds_write(struct month_file *file, struct month_row *rows, size_t count, struct month_row *held, size_t held_count);
 /* Updates file->seconds from the current rows of the table `second`. */
 int month_seconds_read(struct month_file *file);
-/* Marks all rows that month_seconds_read() has read as moved to blocks. Must run inside a transaction. */
+/* Reads the mark: the stamp in row 0 of the table `second`. Points of rows with larger stamps are not in blocks yet. */
+int month_seconds_mark(struct month_file *file, int64_t *mark);
+/* Marks all rows that month_seconds_read() has read as moved to blocks. Must run inside the same transaction. Sets a mark that the
+   table never had before, also if no row was read, so that other handles notice. */
 int month_seconds_clear(struct month_file *file);
 /* Frees the content of file->seconds. */
 static inline void month_seconds_finish(struct month_file *file)

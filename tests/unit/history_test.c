@@ -515,6 +515,36 @@ CASE(an_import_is_rolled_up_again)
     history_series_finish(&twice);
 }
 
+/* Another process imports points while the recording handle is open: first a point of another tag, after a spike of TT-1 was
+   written, then a spike of TT-1 itself, while no point waits to be moved to blocks. The rollups must contain both spikes. */
+CASE(an_import_by_another_handle_keeps_rollups_right)
+{
+    int error;
+    struct month_buckets hours = { 0 };
+    struct month_file *file = open_file(s, NOVEMBER), *imports = open_file(s, NOVEMBER);
+    for (int minute = 0; minute < 150; minute++) {
+        struct history_row row = { 0, { NOVEMBER + minute * 60 * S, minute == 15 ? 99 : minute % 2, QUALITY_GOOD } };
+        assert_int_equal(month_file_write(file, &row, 1, NULL, 0), 0);
+        if (minute == 15)
+            assert_int_equal(month_file_import(imports, 1, &(struct history_point){ NOVEMBER, 1, QUALITY_GOOD }, 1), 0);
+        if (minute % 10 == 0)
+            assert_int_equal(month_file_tidy(file), 0);
+        struct history_point spike = { NOVEMBER + 79 * 60 * S + S, -99, QUALITY_GOOD };
+        if (minute == 80)
+            assert_int_equal(month_file_import(imports, 0, &spike, 1), 0);
+    }
+    assert_int_equal(month_file_tidy(file), 0);
+    month_file_close(&imports);
+    month_file_close(&file);
+    file = month_file_read(s->log, s->folder, month_of(NOVEMBER), &error);
+    assert_int_equal(month_file_buckets(file, "TT-1", LEVEL_1_H, NOVEMBER, NOVEMBER + 3600 * S, &hours), 0);
+    assert_int_equal(hours.buckets.count, 2);
+    assert_true(hours.buckets.at[0].high == 99 && hours.buckets.at[0].low == 0);
+    assert_true(hours.buckets.at[1].high == 1 && hours.buckets.at[1].low == -99);
+    month_file_close(&file);
+    mem_free(hours.buckets.at);
+}
+
 static sqlite3 *open_database(const char *path)
 {
     sqlite3 *db;

@@ -145,8 +145,6 @@ static void restore(struct postgres *postgres)
         return;
     }
     counter_inc(postgres->counters.restored, points);
-    if (points)
-        postgres->params.restored(postgres->params.arg);
 }
 
 /* If this daemon has become the leader: reconnects with the lock that makes it the only writer. A tag's recorded line runs
@@ -214,7 +212,6 @@ static void fill(struct postgres *postgres)
     counter_inc(postgres->counters.restored, points);
     log_info(log_of(postgres), "history: read %lld points from PostgreSQL, covering the %.0f s in which another core led",
              (long long)points, (double)(span.to_us - span.from_us) / 1e6);
-    postgres->params.restored(postgres->params.arg);
 }
 
 /* --- waiting points ----------------------------------------------------------------------------------------------------------- */

@@ -33,9 +33,6 @@ struct postgres_params {
     /* time spans whose points must still be read from the database, as returned by postgres_stop() of the previous instance for
        this folder; copied; NULL: none */
     const struct postgres_owed *owed;
-    /* called on the sending thread after it has copied points that this machine lacked from the database to its history files */
-    void (*restored)(void *arg);
-    void *arg;
 };
 
 struct postgres;
