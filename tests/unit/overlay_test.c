@@ -87,6 +87,50 @@ TEST(alarms_out_of_sight_are_listed)
     reading->alarm = ALARM_NONE;
 }
 
+/* Draws a frame with a hidden marker of tag 2 and a visible marker of tag 0 at (x_px, y_px). Both tags have an alarm. Returns the box of
+   the list in the lower left corner. */
+static struct label_box list_with(double x_px, double y_px, bool strip)
+{
+    struct reading *readings = stand.snapshot->readings;
+    readings[0].alarm = readings[2].alarm = ALARM_H;
+    struct frame *frame = test_frame(frame_create(NULL, WIDTH, HEIGHT));
+    view_default(&stand.toy->scene, WIDTH, HEIGHT, &frame->view);
+    frame->view.strip = strip;
+    memset(frame->bgrx, 255, (size_t)frame->stride_bytes * HEIGHT);
+    frame->markers = mem_array(2, sizeof(*frame->markers));
+    frame->marker_count = 2;
+    frame->markers[0] = (struct frame_marker){ .tag = 2, .x_px = 300, .y_px = 200, .occluded = true };
+    frame->markers[1] = (struct frame_marker){ .tag = 0, .x_px = (float)x_px, .y_px = (float)y_px };
+    overlay_draw(frame, &stand.toy->scene, stand.snapshot, NULL);
+    readings[0].alarm = readings[2].alarm = ALARM_NONE;
+    struct label_box list = { .x = 8, .y = HEIGHT };
+    for (int y = HEIGHT * 2 / 3; y < HEIGHT - overlay_strip_height(frame); y++)
+        if (frame->bgrx[y * frame->stride_bytes + 4 * 16] != 255) {
+            list.y = fmin(list.y, y);
+            list.height = y + 1 - list.y;
+        }
+    return list;
+}
+
+/* The card of the list hides markers. The list must contain their alarms, too. */
+TEST(alarms_under_the_list_are_listed)
+{
+    struct label_box one = list_with(500, 300, false), two = list_with(60, 690, false);
+    assert_true(one.height > 40 && two.height > one.height + 15 && two.height < one.height + 25);
+    /* this marker is above a list of one alarm, and under a list of the two alarms */
+    struct label_box edge = list_with(150, 654, false);
+    assert_true(one.y > 659 && two.y < 659);
+    assert_int_equal(edge.height, one.height);
+}
+
+/* The legend strip covers the lowest rows of the frame: the list must be above the strip, and must contain the alarms under it. */
+TEST(the_strip_hides_no_alarm)
+{
+    struct label_box one = list_with(500, 300, true), two = list_with(500, 700, true);
+    assert_true(one.height > 40 && two.height > one.height + 15);
+    assert_true(one.y + one.height < HEIGHT - 70 && two.y + two.height < HEIGHT - 70);
+}
+
 TEST(any_number_of_alarms_fits)
 {
     for (size_t i = 0; i < stand.snapshot->count; i++)

@@ -161,9 +161,9 @@ static void draw_rest(struct pen *pen)
     }
     if (!pen->bare)
         overlay_alarms(pen);
-    for (int half = 0; half < halves; half++) {
+    for (int half = 0, cards = pen->taken_count; half < halves; half++) {
         pen_choose_half(pen, half);
-        overlay_markers(pen);
+        overlay_markers(pen, cards);
     }
 }
 
@@ -182,11 +182,8 @@ static void draw(struct frame *frame, const struct scene *scene, const struct sn
         draw_banner(pen, pen_word(pen, WORD_NO_LIVE_DATA), NO_DATA_RGB);
     draw_rest(pen);
     cairo_surface_flush(surface);
-    /* in LOOK_MATERIALS colours show no values, so the frame gets no legend strip */
-    if (frame->view.strip && frame->view.look != LOOK_MATERIALS) {
-        pen_choose_half(pen, 0);
-        overlay_strip(pen, frame->bgrx, frame->stride_bytes);
-    }
+    pen_choose_half(pen, 0);
+    overlay_strip(pen, frame->bgrx, frame->stride_bytes);
     cairo_destroy(pen->cairo);
     cairo_surface_finish(surface);
     cairo_surface_destroy(surface);
@@ -224,7 +221,7 @@ void overlay_window(const struct scene *scene, const struct view *view, struct c
     *frame = (struct frame){ .width_px = view->width_px, .height_px = view->height_px, .view = *view };
     pen_init(pen, surface, frame, scene, NULL, NULL);
     double header_px = header_height(pen, 2) + 8 * pen->unit;
-    double strip_px = view->strip ? overlay_strip_height(view->width_px, view->height_px) : 0;
+    double strip_px = overlay_strip_height(frame);
     *out = (struct camera_window){ .left = -1,
                                    .right = 1 - 2 * legend_share(pen, view),
                                    .bottom = -1 + 2 * strip_px / view->height_px,

@@ -24,33 +24,42 @@ static int by_priority(const void *a, const void *b)
     return i->priority != k->priority ? (i->priority > k->priority) - (i->priority < k->priority) : (i->tag > k->tag) - (i->tag < k->tag);
 }
 
-/* Returns flags by tag: true if a visible marker shows the tag. The caller frees the array. */
-static bool *find_seen(struct pen *pen)
+/* The list of alarms, and its texts and card. */
+struct alarm_list {
+    struct unseen *alarms;
+    size_t count, rows; /* number of alarms; number of alarms that are written, the most severe ones */
+    char title[120];
+    double pad;
+    struct label_box card; /* height 0: not laid out yet */
+};
+
+/* Returns flags by tag: true if a visible marker shows the tag. Markers under `card` are not visible. The caller frees the array. */
+static bool *find_seen(struct pen *pen, const struct label_box *card)
 {
     bool *seen = mem_array(pen->scene->plant->tag_count, sizeof(*seen));
     for (int half = 0; half < (pen->frame->view.split ? 2 : 1); half++) {
         pen_choose_half(pen, half);
         for (size_t i = 0; i < pen->frame->marker_count; i++)
-            if (overlay_marker_seen(pen, &pen->frame->markers[i]))
+            if (overlay_marker_seen(pen, &pen->frame->markers[i], card))
                 seen[pen->frame->markers[i].tag] = true;
     }
     return seen;
 }
 
-/* Writes the alarms that no visible marker shows to `list`, which has room for every tag. Returns the count. */
-static size_t find_unseen(struct pen *pen, struct unseen *list)
+/* Adds the alarms that no visible marker shows to the list. listed: flags by tag, true if the list contains the tag's alarm. */
+static void add_unseen(struct pen *pen, struct alarm_list *list, bool *listed)
 {
     const struct plant *plant = pen->scene->plant;
-    bool *seen = find_seen(pen);
-    size_t count = 0;
+    bool *seen = find_seen(pen, &list->card);
     for (size_t i = 0; i < plant->tag_count && i < pen->snapshot->count; i++) {
         enum alarm_kind alarm = (enum alarm_kind)pen->snapshot->readings[i].alarm;
-        if (alarm && !seen[i])
-            list[count++] = (struct unseen){ (int)i, alarm_priority(&plant->tags[i], alarm) };
+        if (!alarm || seen[i] || listed[i])
+            continue;
+        listed[i] = true;
+        list->alarms[list->count++] = (struct unseen){ (int)i, alarm_priority(&plant->tags[i], alarm) };
     }
     mem_free(seen);
-    qsort(list, count, sizeof(*list), by_priority);
-    return count;
+    qsort(list->alarms, list->count, sizeof(*list->alarms), by_priority);
 }
 
 static void format_reading(const struct pen *pen, int tag, char out[200])
@@ -67,54 +76,71 @@ static void format_reading(const struct pen *pen, int tag, char out[200])
                  kind);
 }
 
-static void draw_rows(struct pen *pen, const struct label_box *card, double pad, const struct unseen *list, size_t rows)
+static void lay_out(struct pen *pen, struct alarm_list *list)
 {
-    double y = card->y + pad + ROW * pen->text_px;
+    double pad = 8 * pen->unit, height_px = pen->frame->height_px - overlay_strip_height(pen->frame);
+    double most_px = MAX_HEIGHT * height_px - 2 * pad;
+    size_t rows = (size_t)fmin(fmin((double)list->count, MAX_ROWS), fmax(most_px / (ROW * pen->text_px) - 1, 0));
+    char text[200], number[24];
+    snprintf(number, sizeof(number), "%zu", list->count);
+    pen_say(pen,
+            rows < list->count && rows ? WORD_UNSEEN_SUCH_AS
+            : list->count > 1          ? WORD_UNSEEN
+                                       : WORD_UNSEEN_ONE,
+            number, NULL, list->title, sizeof(list->title));
+    pen_font(pen, 0.9, true);
+    double width = pen_text_width(pen, list->title);
     pen_font(pen, 0.85, false);
-    for (size_t i = 0; i < rows; i++, y += ROW * pen->text_px) {
-        const struct reading *reading = &pen->snapshot->readings[list[i].tag];
+    for (size_t i = 0; i < rows; i++) {
+        format_reading(pen, list->alarms[i].tag, text);
+        width = fmax(width, pen_text_width(pen, text) + 1.7 * pen->text_px);
+    }
+    list->rows = rows;
+    list->pad = pad;
+    list->card = (struct label_box){ pad, 0, width + 2 * pad, (1 + (double)rows) * ROW * pen->text_px + 1.5 * pad };
+    list->card.y = height_px - pad - list->card.height;
+}
+
+static void draw_rows(struct pen *pen, const struct alarm_list *list)
+{
+    double x = list->card.x + list->pad, y = list->card.y + list->pad + ROW * pen->text_px;
+    pen_font(pen, 0.85, false);
+    for (size_t i = 0; i < list->rows; i++, y += ROW * pen->text_px) {
+        const struct unseen *alarm = &list->alarms[i];
         char text[200];
-        format_reading(pen, list[i].tag, text);
-        overlay_ring(pen, card->x + pad + 0.6 * pen->text_px, y + 0.65 * pen->text_px, 0.45 * pen->text_px, list[i].priority,
-                     (enum alarm_status)reading->alarm_status);
+        format_reading(pen, alarm->tag, text);
+        overlay_ring(pen, x + 0.6 * pen->text_px, y + 0.65 * pen->text_px, 0.45 * pen->text_px, alarm->priority,
+                     (enum alarm_status)pen->snapshot->readings[alarm->tag].alarm_status);
         pen_ink(pen, 1);
-        pen_text(pen, card->x + pad + 1.7 * pen->text_px, y + pen->text_px, text);
+        pen_text(pen, x + 1.7 * pen->text_px, y + pen->text_px, text);
     }
 }
 
-static void draw_list(struct pen *pen, const struct unseen *list, size_t count)
+static void draw_list(struct pen *pen, const struct alarm_list *list)
 {
-    double pad = 8 * pen->unit, most_px = MAX_HEIGHT * pen->frame->height_px - 2 * pad;
-    size_t rows = (size_t)fmin(fmin((double)count, MAX_ROWS), fmax(most_px / (ROW * pen->text_px) - 1, 0));
-    char title[120], text[200], number[24];
-    snprintf(number, sizeof(number), "%zu", count);
-    pen_say(pen,
-            rows < count && rows ? WORD_UNSEEN_SUCH_AS
-            : count > 1          ? WORD_UNSEEN
-                                 : WORD_UNSEEN_ONE,
-            number, NULL, title, sizeof(title));
-    pen_font(pen, 0.9, true);
-    double width = pen_text_width(pen, title);
-    pen_font(pen, 0.85, false);
-    for (size_t i = 0; i < rows; i++) {
-        format_reading(pen, list[i].tag, text);
-        width = fmax(width, pen_text_width(pen, text) + 1.7 * pen->text_px);
-    }
-    struct label_box card = { pad, 0, width + 2 * pad, (1 + (double)rows) * ROW * pen->text_px + 1.5 * pad };
-    card.y = pen->frame->height_px - pad - card.height;
-    pen_card(pen, &card);
-    pen_take(pen, &card);
+    pen_card(pen, &list->card);
+    pen_take(pen, &list->card);
     pen_font(pen, 0.9, true);
     pen_ink(pen, 1);
-    pen_text(pen, card.x + pad, card.y + pad + pen->text_px, title);
-    draw_rows(pen, &card, pad, list, rows);
+    pen_text(pen, list->card.x + list->pad, list->card.y + list->pad + pen->text_px, list->title);
+    draw_rows(pen, list);
 }
 
 void overlay_alarms(struct pen *pen)
 {
-    struct unseen *list = mem_array(pen->scene->plant->tag_count, sizeof(*list));
-    size_t count = find_unseen(pen, list);
-    if (count)
-        draw_list(pen, list, count);
-    mem_free(list);
+    size_t tags = pen->scene->plant->tag_count, before;
+    struct alarm_list list = { .alarms = mem_array(tags, sizeof(*list.alarms)) };
+    bool *listed = mem_array(tags, sizeof(*listed));
+    /* the card hides markers, whose alarms are then added to the list, which may enlarge the card. Alarms are never removed from the
+       list, so the loop ends. */
+    do {
+        before = list.count;
+        add_unseen(pen, &list, listed);
+        if (list.count > before)
+            lay_out(pen, &list);
+    } while (list.count > before);
+    if (list.count > 0)
+        draw_list(pen, &list);
+    mem_free(list.alarms);
+    mem_free(listed);
 }

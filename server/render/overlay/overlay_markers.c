@@ -394,10 +394,10 @@ static struct label_box mark_box(const struct pen *pen, const struct frame_marke
     return (struct label_box){ (double)marker->x_px - radius, (double)marker->y_px - radius, 2 * radius, 2 * radius };
 }
 
-bool overlay_marker_seen(const struct pen *pen, const struct frame_marker *marker)
+bool overlay_marker_seen(const struct pen *pen, const struct frame_marker *marker, const struct label_box *card)
 {
     struct label_box mark = mark_box(pen, marker);
-    return !marker->occluded && is_inside(pen, marker) && !is_under(pen, pen->taken_count, &mark);
+    return !marker->occluded && is_inside(pen, marker) && !is_under(pen, pen->taken_count, &mark) && !box_meets(card, &mark);
 }
 
 /* Returns whether the marker is drawn even where markers overlap: true if it has an alarm, is Bad or uncertain, is the chosen
@@ -437,10 +437,8 @@ static size_t choose_markers(const struct pen *pen, int cards, size_t **chosen)
     return kept;
 }
 
-void overlay_markers(struct pen *pen)
+void overlay_markers(struct pen *pen, int cards)
 {
-    /* number of boxes that are occupied before any marker is drawn: cards of the overlay (such as the legend) and banners */
-    int cards = pen->taken_count;
     struct marker_labels wanted = { .pen = pen };
     size_t *chosen, count = choose_markers(pen, cards, &chosen);
     wanted.items = mem_array(count, sizeof(*wanted.items));

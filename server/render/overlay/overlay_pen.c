@@ -139,5 +139,5 @@ void pen_choose_half(struct pen *pen, int half)
     int left_px = half ? view_left_px(view) : 0;
     pen->half = half;
     view_half(view, half, &pen->view);
-    pen->area = (struct label_box){ left_px, 0, pen->view.width_px, pen->view.height_px };
+    pen->area = (struct label_box){ left_px, 0, pen->view.width_px, pen->view.height_px - overlay_strip_height(pen->frame) };
 }

@@ -21,7 +21,7 @@ struct pen {
     const struct frame *frame;
     struct view view;      /* view that the pen draws: the whole view, or the selected half of a split view, as a view of its own */
     int half;              /* index of the half of a split view that is being drawn: 0 left, 1 right; 0 if the view is not split */
-    struct label_box area; /* area of the half being drawn, in pixels of the frame */
+    struct label_box area; /* area of the half being drawn, above the legend strip, in pixels of the frame */
     const struct scene *scene;
     const struct snapshot *snapshot;
     const struct loop_checks *loop_checks; /* NULL: none */
@@ -72,9 +72,10 @@ void overlay_bar(struct pen *pen, const struct label_box *bar);
    left. */
 double overlay_bar_width(struct pen *pen);
 double overlay_bar_left(struct pen *pen);
-/* Returns the height in pixels of the machine-readable legend strip in a frame of this size; 0: the frame is too small for one. */
-int overlay_strip_height(int width_px, int height_px);
-/* Writes the machine-readable legend strip over the lowest rows of the frame, if the frame is large enough. bgrx: the frame's pixels. */
+/* Returns the height in pixels of the frame's machine-readable legend strip. 0: the frame gets none, because its view does not ask for
+   one or shows materials (LOOK_MATERIALS), or because the frame is too small. */
+int overlay_strip_height(const struct frame *frame);
+/* Writes the machine-readable legend strip over the lowest rows of the frame, if it gets one. bgrx: the frame's pixels. */
 void overlay_strip(struct pen *pen, uint8_t *bgrx, int stride_bytes);
 /* Draws the legend of the half that pen_choose_half() selected, or of the whole view if it is not split. */
 void overlay_legend(struct pen *pen);
@@ -106,10 +107,11 @@ void overlay_unknown_direction(struct pen *pen, double x, double y);
 /* Draws the symbols for directions (arrows, strokes and crosses) in the half that pen_choose_half() selected, or in the whole
    view if it is not split. */
 void overlay_arrows(struct pen *pen);
-/* Draws markers, alarm rings and labels of the selected half. */
-void overlay_markers(struct pen *pen);
-/* Returns whether a marker is within the selected half, and neither the plant nor the overlay drawn so far hides it. */
-bool overlay_marker_seen(const struct pen *pen, const struct frame_marker *marker);
+/* Draws markers, alarm rings and labels of the selected half. cards: number of boxes that were occupied before the markers of any half
+   were drawn: cards of the overlay (such as the legend) and banners. */
+void overlay_markers(struct pen *pen, int cards);
+/* Returns whether a marker is within the selected half, and neither the plant, nor the overlay drawn so far, nor `card` hides it. */
+bool overlay_marker_seen(const struct pen *pen, const struct frame_marker *marker, const struct label_box *card);
 /* Lists active alarms of the whole plant that no marker in the frame shows, most severe first. */
 void overlay_alarms(struct pen *pen);
 

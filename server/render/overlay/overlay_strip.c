@@ -68,16 +68,20 @@ static const uint8_t *ink_at(const struct strip_ink *ink, double column, int row
     return grey(strip_cell_dark(ink->code, row - ramp_end, cell - STRIP_FINDER));
 }
 
-int overlay_strip_height(int width_px, int height_px)
+int overlay_strip_height(const struct frame *frame)
 {
-    int high = STRIP_ROWS * width_px / STRIP_COLUMNS;
-    return width_px < STRIP_LEAST_PX * STRIP_COLUMNS || high > height_px / 2 ? 0 : high;
+    int high = STRIP_ROWS * frame->width_px / STRIP_COLUMNS;
+    /* with LOOK_MATERIALS colours show no values */
+    bool wanted = frame->view.strip && frame->view.look != LOOK_MATERIALS;
+    return !wanted || frame->width_px < STRIP_LEAST_PX * STRIP_COLUMNS || high > frame->height_px / 2 ? 0 : high;
 }
 
 void overlay_strip(struct pen *pen, uint8_t *bgrx, int stride_bytes)
 {
-    const int width = pen->frame->width_px, height = pen->frame->height_px, high = overlay_strip_height(width, height);
+    const int width = pen->frame->width_px, height = pen->frame->height_px, high = overlay_strip_height(pen->frame);
     struct strip_ink ink;
+    if (high == 0)
+        return;
     choose_ink(pen, &ink);
     for (int y = 0; y < high; y++) {
         uint8_t *to = bgrx + (size_t)(height - high + y) * (size_t)stride_bytes;
