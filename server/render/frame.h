@@ -65,7 +65,7 @@ struct frame {
     int64_t field_ns, render_ns, readback_ns; /* duration of each stage */
     /* time that the render thread spent on this frame, waiting for the GPU included; 0: not drawn by a render thread */
     int64_t turn_ns;
-    struct baseline baseline;    /* baseline whose readings are subtracted; id 0: the frame shows no differences */
+    struct baseline baseline[2]; /* [half of a split view, else 0]: baseline whose readings are subtracted; id 0: it shows no differences */
     /* copies of the readings used to draw the frame (render/frame_record.h); NULL: none were requested */
     struct frame_record *record;
     /* depth grid of the frame, or of each half of a split view, with which clients warp the picture for a moved camera; NULL: none */

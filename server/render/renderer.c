@@ -115,7 +115,7 @@ static struct frame *start_frame(struct renderer *renderer, const struct frame_p
     frame->content = plan->content;
     frame->field_ns = plan->field_ns;
     frame->triangles = frame_triangles(context);
-    field_baseline(renderer->fields.field, &view->field, &frame->baseline);
+    field_baseline(renderer->fields.field, &view->field, &frame->baseline[0]);
     return frame;
 }
 

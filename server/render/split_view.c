@@ -115,8 +115,7 @@ static void add_meaning(struct frame *whole, const struct frame *part, int half)
     else if (part->oldest_age_ns != INT64_MAX && part->oldest_age_ns > whole->oldest_age_ns)
         whole->oldest_age_ns = part->oldest_age_ns;
     whole->drawn_error[half] = part->drawn_error[0];
-    if (!whole->baseline.id)
-        whole->baseline = part->baseline;
+    whole->baseline[half] = part->baseline[0];
     whole->field_ns += part->field_ns;
     whole->render_ns += part->render_ns;
     whole->readback_ns += part->readback_ns;

@@ -129,6 +129,25 @@ TEST_WITH(test_launched_together, set_up, stand_tear_down)
     renderer_use_gl(stand.renderer, false);
 }
 
+/* Each half of a frame of differences has its own baseline. */
+TEST_WITH(test_two_baselines, set_up, stand_tear_down)
+{
+    struct baselines *baselines = baselines_create();
+    struct view view, right;
+    view_default(&stand.toy->scene, WIDTH, HEIGHT, &view);
+    field_set_baselines(stand.field, baselines);
+    view.field.show = SHOW_DIFFERENCE;
+    view.field.baseline = baselines_set(baselines, "before", stand.snapshot);
+    right = view;
+    right.field.baseline = baselines_set(baselines, "after", stand.snapshot);
+    view_split(&view, &right);
+    struct frame *frame = test_frame(split_view_draw_now(stand.renderer, &view, stand.snapshot));
+    assert_string_equal(frame->baseline[0].name, "before");
+    assert_string_equal(frame->baseline[1].name, "after");
+    field_set_baselines(stand.field, NULL);
+    baselines_destroy(&baselines);
+}
+
 /* Pictures of 16 to 19 pixels width, too narrow for two halves and the divider, must be drawn without a fault. */
 TEST_WITH(test_narrow, set_up, stand_tear_down)
 {

@@ -272,6 +272,18 @@ static int legend_differs_px(enum look look)
     return count;
 }
 
+/* Returns the number of pixels in which one half of two frames differs. Releases both frames. */
+static int halves_differ_px(int half, struct frame *frames[2])
+{
+    int count = 0;
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = half * WIDTH / 2; x < (half + 1) * WIDTH / 2; x++)
+            count += frames[0]->bgrx[y * frames[0]->stride_bytes + 4 * x] != frames[1]->bgrx[y * frames[1]->stride_bytes + 4 * x];
+    frame_unref(&frames[0]);
+    frame_unref(&frames[1]);
+    return count;
+}
+
 /* Returns the number of pixels in which a half's legend differs between two split frames whose halves have these errors. */
 static int legends_differ_px(int half, const double a[2], const double b[2])
 {
@@ -288,13 +300,40 @@ static int legends_differ_px(int half, const double a[2], const double b[2])
         memcpy(frames[i]->drawn_error, i ? b : a, sizeof(frames[i]->drawn_error));
         overlay_draw(frames[i], &stand.toy->scene, stand.snapshot, NULL);
     }
-    int count = 0;
-    for (int y = 0; y < HEIGHT; y++)
-        for (int x = half * WIDTH / 2; x < (half + 1) * WIDTH / 2; x++)
-            count += frames[0]->bgrx[y * frames[0]->stride_bytes + 4 * x] != frames[1]->bgrx[y * frames[1]->stride_bytes + 4 * x];
-    frame_unref(&frames[0]);
-    frame_unref(&frames[1]);
-    return count;
+    return halves_differ_px(half, frames);
+}
+
+/* Returns the number of pixels in which a half's legend differs between two split frames of differences. The halves of the first frame
+   subtract no baseline, those of the second the baselines with these names; "": none. */
+static int baselines_differ_px(int half, const char *left, const char *right)
+{
+    struct frame *frames[2];
+    for (int i = 0; i < 2; i++) {
+        struct view view;
+        view_default(&stand.toy->scene, WIDTH, HEIGHT, &view);
+        view.field.show = SHOW_DIFFERENCE;
+        struct view other = view;
+        other.range_max *= 2; /* so that each half has a legend of its own */
+        view_split(&view, &other);
+        frames[i] = frame_create(NULL, WIDTH, HEIGHT);
+        frames[i]->view = view;
+        memset(frames[i]->bgrx, 255, (size_t)frames[i]->stride_bytes * HEIGHT);
+        const char *names[2] = { left, right };
+        for (int k = 0; k < 2 && i == 1; k++) {
+            frames[i]->baseline[k].id = names[k][0] ? (uint32_t)k + 1 : 0;
+            snprintf(frames[i]->baseline[k].name, sizeof(frames[i]->baseline[k].name), "%s", names[k]);
+        }
+        overlay_draw(frames[i], &stand.toy->scene, stand.snapshot, NULL);
+    }
+    return halves_differ_px(half, frames);
+}
+
+TEST(each_half_names_its_own_baseline)
+{
+    assert_true(baselines_differ_px(0, "before the repair", "") > 100);
+    assert_int_equal(baselines_differ_px(1, "before the repair", ""), 0);
+    assert_true(baselines_differ_px(1, "before the repair", "yesterday") > 100);
+    assert_int_equal(baselines_differ_px(0, "", "yesterday"), 0);
 }
 
 TEST(each_half_says_its_own_error)

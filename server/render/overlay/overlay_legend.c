@@ -132,10 +132,10 @@ static void choose_rows(const struct pen *pen, struct legend *legend)
             legend->rows[legend->row_count++] = (enum row)(ROW_ALARM + i - 1);
 }
 
-/* Writes the baseline that the view subtracts: its name, or its time in the plant's time zone. */
+/* Writes the baseline that the half subtracts: its name, or its time in the plant's time zone. */
 static void write_baseline(const struct pen *pen, struct legend *legend)
 {
-    const struct baseline *baseline = &pen->frame->baseline;
+    const struct baseline *baseline = &pen->frame->baseline[pen->half];
     time_t seconds = (time_t)(baseline->taken_utc_ns / NS_PER_S);
     struct tm local;
     char what[81] = "";
@@ -144,7 +144,7 @@ static void write_baseline(const struct pen *pen, struct legend *legend)
     else if (localtime_r(&seconds, &local))
         strftime(what, sizeof(what), "%m-%d %H:%M:%S", &local);
     pen_say(pen, WORD_SINCE, what, NULL, legend->since, sizeof(legend->since));
-    if (baseline->id && baseline->id == pen->view.field.baseline)
+    if (baseline->id)
         add_note(legend, legend->since);
 }
 
