@@ -4,7 +4,7 @@
 // compressed.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { existsSync, writeFileSync } from 'node:fs';
+import { existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { setUp } from './support/set_up.mjs';
@@ -44,6 +44,7 @@ function judge(name, move = ([x, y]) => [x, y]) {
 
 setUp(skip, async (own) => {
     plant = own(await TinyPlant.create());
+    writeFileSync(plant.file, readFileSync(plant.file, 'utf8').replace('max: 100 }', 'max: 100, prepare: [gp], gp: { range_m: 2 } }'));
     writeFileSync(file('values.csv'), 'TI-1,82\nTI-2,17\nPI-1,5\n');
     assert.equal(plant.prepare().code, 0);
     const { code, err } = snapshot('whole.png', '--strip', 'legend');
@@ -85,6 +86,14 @@ test('values are read from a screenshot that was scaled, framed and compressed',
     ffmpeg('whole.png', 'shot.jpg', '-vf', `scale=iw*${scale}:ih*${scale}:flags=bicubic,pad=1600:900:37:61:color=0x336699`, '-q:v', '4');
     const { read: share, held, error, width } = judge('shot.jpg', move);
     assert.ok(share > 0.9 && held > 0.95 && error < 0.8 && width < 10);
+});
+
+test('the quantity that a picture shows is named', { skip }, () => {
+    for (const [show, words] of [['uncertainty', 'standard deviation'], ['blind', 'detectable hot spot']]) {
+        const { code, err } = snapshot(`${show}.png`, '--strip', 'legend', '--show', show, '--interpolation', 'gp');
+        assert.equal(code, 0, err);
+        assert.match(read(`${show}.png`, [640, 5]).out, new RegExp(`group temperature, ${words}, `));
+    }
 });
 
 test('pictures without a whole legend strip, and files that are no pictures, are refused', { skip }, () => {

@@ -105,9 +105,21 @@ static bool whole(const char *text, int *out)
     return end != text && !*end && number >= 0 && number < 1 << 20;
 }
 
+/* Returns the words for the quantity (enum field_show) that a picture shows. show: number in the picture's strip, which a newer version
+   may have written. */
+static const char *words_of(uint8_t show)
+{
+    static const char *const words[] = { [SHOW_VALUE] = "",
+                                         [SHOW_DISTANCE] = ", distance",
+                                         [SHOW_DIFFERENCE] = ", difference",
+                                         [SHOW_OPERATOR] = ", between limits",
+                                         [SHOW_UNCERTAINTY] = ", standard deviation",
+                                         [SHOW_BLIND] = ", detectable hot spot" };
+    return show < sizeof(words) / sizeof(words[0]) ? words[show] : ", unknown quantity";
+}
+
 int cmd_read(int argc, char **argv)
 {
-    static const char *const shows[] = { "", ", distance", ", difference", ", between limits" };
     struct strip_picture picture = { 0 };
     struct strip_found *found = NULL;
     const char *why = NULL;
@@ -129,7 +141,7 @@ int cmd_read(int argc, char **argv)
         if (code)
             fprintf(stderr, "plantcast: %s: %s\n", argv[1], why);
         else
-            printf("%s: group %s%s, %g to %g %s%s\n", argv[1], found->strip.group, shows[found->strip.show % 4], (double)found->strip.min,
+            printf("%s: group %s%s, %g to %g %s%s\n", argv[1], found->strip.group, words_of(found->strip.show), (double)found->strip.min,
                    (double)found->strip.max, found->strip.unit, found->strip.log ? ", logarithmic" : "");
         for (int i = 2; !why && i < argc; i += 2)
             code |= !(whole(argv[i], &x) && whole(argv[i + 1], &y) && print_value(&picture, found, x, y));
