@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Requests data from the daemon, one request at a time: its time zone, the saved views, and pictures. */
+/* Requests data from the daemon, one request at a time: the saved views, and pictures. */
 #include "source.h"
 
 #include <errno.h>
@@ -11,7 +11,6 @@
 
 #include "base/system/http_request.h"
 #include "clients/link/png.h"
-#include "message/view_address.h"
 #include "video_words.h"
 
 /* Timing in microseconds. A picture shows the instant of its request. The next picture is requested a fixed interval later and must
@@ -22,7 +21,7 @@ static const gint64 OLDEST_US = 2700000, SLOWEST_US = 1300000, OTHERS_US = 12000
                     DENIED_US = 8000000;
 enum { MAX_BYTES = 128 << 20 }; /* limit of a response */
 
-enum ask { ASK_PLANT, ASK_VIEWS, ASK_PICTURE, ASK_COUNT };
+enum ask { ASK_VIEWS, ASK_PICTURE, ASK_COUNT };
 
 struct video_source {
     const struct video_options *options;
@@ -34,17 +33,17 @@ struct video_source {
     gint64 asked_us, asked_utc_us, due_us[ASK_COUNT], wait_until_us; /* monotonic, except asked_utc_us */
 
     GTimeZone *zone;
-    /* the saved view to show: view: its text as the daemon stores it; view_query: the same as a query of /snapshot.png;
-       view_title: its title. NULL: not known yet, or the video shows no saved view */
-    char *view, *view_query, *view_title;
+    char *zone_name; /* IANA name of `zone`; NULL: `zone` is this machine's, because the plant's is not known yet */
+    char *view;      /* the saved view to show, as the daemon stores it; NULL: not known yet, or the video shows no saved view */
+    char *title;     /* title of the saved view, else the plant's name; NULL: not known */
     cairo_surface_t *picture;
     gint64 picture_us, age_ms;
-    bool valued; /* true: the picture shows values, so the strip below it shows their age */
+    bool valued; /* true: the picture shows readings, so without any usable reading a text card takes its place */
     char headline[120], detail[240], said[240];
     gint64 since_us;    /* UTC time since which the text card is shown; 0: a picture is shown */
     gint64 seen_utc_us; /* instant that the newest picture shows, UTC */
     bool barred;        /* true: access or the saved view was withdrawn, so the picture must be hidden immediately */
-    bool limited;       /* true: the token may not list the saved views but may show this view, which is then requested by its id */
+    bool limited;       /* true: the token may not list the saved views but may show this view */
     guint64 pictures;
 };
 
@@ -107,59 +106,15 @@ static void refuse(struct video_source *source, long status)
 
 /* --- responses ------------------------------------------------------------------------------------------- */
 
-static void take_plant(struct video_source *source, const json_t *o)
-{
-    const char *zone = json_string_value(json_object_get(json_object_get(o, "plant"), "time_zone"));
-    GTimeZone *found = zone ? g_time_zone_new_identifier(zone) : NULL;
-    if (found) {
-        g_time_zone_unref(source->zone);
-        source->zone = found;
-    }
-    const char *name = json_string_value(json_object_get(json_object_get(o, "plant"), "name"));
-    if (!source->options->view && name) {
-        g_free(source->view_title);
-        source->view_title = g_strdup(name);
-    }
-}
-
-/* Returns a saved view as a query for /snapshot.png (g_free). Leaves out the instant, the selection, and the field settings that need
-   the role engineer. Returns NULL, with the reason in *error, if a picture cannot show the view. */
-static char *query_of(const char *view, struct message_error *error)
-{
-    static const char *const left_out[] = {
-        "at", "selected", "fill", "strength", "decay", "power", "radius_m", "reach_m", "sensors", NULL
-    };
-    struct view_address address;
-    GString *query = g_string_new("");
-    bool good = view_address_read(&address, *view == '#' ? view + 1 : view, error);
-    for (size_t i = 0; i < address.count; i++) {
-        char **pair = g_strsplit(address.args[i], "=", 2);
-        char *value = g_uri_escape_string(pair[1], ",:;=", TRUE);
-        if (!g_strv_contains(left_out, pair[0]))
-            g_string_append_printf(query, "&%s=%s", pair[0], value);
-        g_free(value);
-        g_strfreev(pair);
-    }
-    view_address_finish(&address);
-    return g_string_free(query, !good);
-}
-
 static void take_view(struct video_source *source, const char *view, const char *title)
 {
-    struct message_error error = { 0 };
-    g_free(source->view_title);
-    source->view_title = g_strdup(title);
+    g_free(source->title);
+    source->title = g_strdup(title);
     if (g_strcmp0(source->view, view) == 0)
         return;
     source->due_us[ASK_PICTURE] = 0;
     g_free(source->view);
-    g_free(source->view_query);
-    source->view_query = query_of(view, &error);
-    source->view = source->view_query ? g_strdup(view) : NULL;
-    if (!source->view) {
-        fail(source, VIDEO_NO_VIEW, VIDEO_SAID, error.text, NULL);
-        bar(source);
-    }
+    source->view = g_strdup(view);
 }
 
 static void take_views(struct video_source *source, const json_t *o)
@@ -203,11 +158,51 @@ static cairo_surface_t *decode(const struct video_options *options, const struct
     return png_read(at, body->length);
 }
 
+/* Returns the value of a part of the header Plantcast-Frame, decoded (g_free). Returns NULL if the header does not have the part. name:
+   the part's name with an equals sign. */
+static char *part_of(const char *header, const char *name)
+{
+    char **parts = g_strsplit(header, ", ", -1), *value = NULL;
+    for (char **part = parts; *part && !value; part++)
+        if (g_str_has_prefix(*part, name))
+            value = g_uri_unescape_string(*part + strlen(name), NULL);
+    g_strfreev(parts);
+    return value;
+}
+
+static bool says(const char *header, const char *name, const char *expected)
+{
+    char *value = part_of(header, name);
+    bool same = g_strcmp0(value, expected) == 0;
+    g_free(value);
+    return same;
+}
+
+/* Reads the plant's time zone and, if the video shows no saved view, the plant's name. */
+static void take_plant(struct video_source *source, const char *header)
+{
+    char *zone_name = part_of(header, "time_zone="), *name = source->options->view ? NULL : part_of(header, "plant=");
+    GTimeZone *zone = zone_name && g_strcmp0(zone_name, source->zone_name) != 0 ? g_time_zone_new_identifier(zone_name) : NULL;
+    if (zone) {
+        g_time_zone_unref(source->zone);
+        source->zone = zone;
+        g_free(source->zone_name);
+        source->zone_name = g_steal_pointer(&zone_name);
+    }
+    if (name) {
+        g_free(source->title);
+        source->title = g_steal_pointer(&name);
+    }
+    g_free(zone_name);
+    g_free(name);
+}
+
 static void take_picture(struct video_source *source)
 {
     struct curl_header *header = NULL;
     CURLHcode found = curl_easy_header(source->http.handle, "Plantcast-Frame", 0, CURLH_HEADER, -1, &header);
-    const char *age = found == CURLHE_OK ? strstr(header->value, "oldest_age_ms=") : NULL;
+    char *age = found == CURLHE_OK ? part_of(header->value, "oldest_age_ms=") : NULL;
+    bool past = age && says(header->value, "past=", "yes");
     gint64 took_us = g_get_monotonic_time() - source->asked_us;
     cairo_surface_t *picture = NULL;
     char number[32], other[32];
@@ -217,18 +212,27 @@ static void take_picture(struct video_source *source)
         fail(source, VIDEO_TOO_SLOW, VIDEO_TOOK, number, other);
     } else if (!age) {
         fail(source, VIDEO_NO_PICTURE, VIDEO_EARLIER, NULL, NULL);
+    } else if (past) {
+        fail(source, VIDEO_NO_PICTURE, VIDEO_PAST, NULL, NULL);
+        bar(source);
+        source->wait_until_us = source->asked_us + DENIED_US;
     } else if (!(picture = decode(source->options, &source->http.answer))) {
         g_snprintf(number, sizeof(number), "%d", source->options->width_px);
         g_snprintf(other, sizeof(other), "%d", canvas_picture_px(source->options->height_px));
         fail(source, VIDEO_NO_PICTURE, VIDEO_NO_PNG, number, other);
     }
+    if (picture) {
+        source->age_ms = strcmp(age, "none") != 0 ? g_ascii_strtoll(age, NULL, 10) : -1;
+        source->valued = !says(header->value, "shows_readings=", "no");
+        take_plant(source, header->value);
+    }
+    g_free(age);
     if (!picture)
         return;
     g_clear_pointer(&source->picture, cairo_surface_destroy);
     source->picture = picture;
     source->picture_us = source->asked_us;
     source->seen_utc_us = source->asked_utc_us;
-    source->age_ms = strncmp(age + 14, "none", 4) ? g_ascii_strtoll(age + 14, NULL, 10) : -1;
     source->barred = false;
     source->pictures++;
 }
@@ -254,9 +258,6 @@ static void on_answer(struct video_source *source)
         return;
     }
     if (status != 200) {
-        /* errors of this request do not hide the picture, unless the daemon refused the token (401, 403) */
-        if (source->asked == ASK_PLANT && status != 401 && status != 403)
-            return;
         refuse(source, status);
         return;
     }
@@ -265,10 +266,7 @@ static void on_answer(struct video_source *source)
         return;
     }
     json_t *o = json_loadb(source->http.answer.at ? source->http.answer.at : "", source->http.answer.length, 0, NULL);
-    if (source->asked == ASK_PLANT)
-        take_plant(source, o);
-    else
-        take_views(source, o);
+    take_views(source, o);
     json_decref(o);
 }
 
@@ -299,32 +297,29 @@ static char *url_of(const struct video_source *source, enum ask ask)
 {
     const struct video_options *options = source->options;
     if (ask != ASK_PICTURE)
-        return g_strconcat(options->url, ask == ASK_PLANT ? "api/v1/plant" : "api/v1/views", NULL);
+        return g_strconcat(options->url, "api/v1/views", NULL);
     GString *url = g_string_new(options->url);
     g_string_append_printf(url, "snapshot.png?width=%d&height=%d", options->width_px, canvas_picture_px(options->height_px));
     if (!options->query || !strstr(options->query, "language="))
         g_string_append_printf(url, "&language=%s", options->language);
     if (options->query)
         g_string_append_printf(url, "&%s", options->query);
-    char *id = source->limited ? g_uri_escape_string(source->options->view, NULL, FALSE) : NULL;
+    /* The view is requested by its id, because it may have parameters that the token's role may not send. A token for some views may not
+       send `at`. */
+    char *id = options->view ? g_uri_escape_string(options->view, NULL, FALSE) : NULL;
     if (id)
-        g_string_append_printf(url, "&view=%s", id);
-    else if (source->view)
-        g_string_append(url, source->view_query);
+        g_string_append_printf(url, "&view=%s%s", id, source->limited ? "" : "&at=now");
     g_free(id);
     return g_string_free(url, FALSE);
 }
 
 static void ask(struct video_source *source, enum ask what, gint64 now_us)
 {
-    static const gint64 again_us[ASK_COUNT] = { [ASK_PLANT] = 600 * G_USEC_PER_SEC, [ASK_VIEWS] = VIEWS_US };
     char *url = url_of(source, what);
     source->asked = what;
     source->asked_us = now_us;
     source->asked_utc_us = g_get_real_time();
-    source->due_us[what] = now_us + (what == ASK_PICTURE ? source->options->every_ms * 1000 : again_us[what]);
-    if (what == ASK_PICTURE)
-        source->valued = strstr(url, "&split=") || (!strstr(url, "&look=materials") && !strstr(url, "&show=distance"));
+    source->due_us[what] = now_us + (what == ASK_PICTURE ? source->options->every_ms * 1000 : VIEWS_US);
     gint64 most_us = what == ASK_PICTURE ? OLDEST_US : OTHERS_US;
     CURLcode good = curl_easy_setopt(source->http.handle, CURLOPT_URL, url); /* curl copies it */
     curl_easy_setopt(source->http.handle, CURLOPT_TIMEOUT_MS, (long)(most_us / 1000));
@@ -353,8 +348,6 @@ static void go_on(struct video_source *source, gint64 now_us)
         ask(source, ASK_PICTURE, now_us);
     else if (!nameless && source->options->view && now_us >= source->due_us[ASK_VIEWS])
         ask(source, ASK_VIEWS, now_us);
-    else if (source->pictures > 0 && now_us >= source->due_us[ASK_PLANT])
-        ask(source, ASK_PLANT, now_us);
 }
 
 /* --- decides what a frame shows: the newest picture, or a text card with the reason why there is none ----------- */
@@ -365,7 +358,7 @@ void source_look(struct video_source *source, struct shown *out)
     go_on(source, now_us);
     bool young = source->picture && !source->barred && now_us - source->picture_us < OLDEST_US;
     bool frozen = young && source->age_ms < 0 && source->valued;
-    const char *title = source->view_title ? source->view_title : source->limited ? source->options->view : "";
+    const char *title = source->title ? source->title : source->limited ? source->options->view : "";
     *out = (struct shown){ .title = title, .zone = source->zone, .words = source->options->words, .age_ms = -1 };
     out->headline = source->headline;
     out->detail = source->detail;
@@ -428,7 +421,7 @@ void source_destroy(struct video_source **pointer)
     http_request_finish(&source->http);
     g_time_zone_unref(source->zone);
     g_free(source->view);
-    g_free(source->view_query);
-    g_free(source->view_title);
+    g_free(source->zone_name);
+    g_free(source->title);
     g_free(source);
 }

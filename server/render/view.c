@@ -32,6 +32,12 @@ const char *view_unit(const struct plant *plant, const struct view *view)
     return view->field.show == SHOW_DISTANCE ? "m" : view_is_operator(view) || !unit ? "" : unit;
 }
 
+bool view_shows_readings(const struct view *view)
+{
+    bool left = view->field.show != SHOW_DISTANCE && view->look != LOOK_MATERIALS;
+    return left || (view->split && view->right.field.show != SHOW_DISTANCE && view->right.look != LOOK_MATERIALS);
+}
+
 void view_default_scale(const struct scene *scene, struct view *view)
 {
     const struct plant_group *group = &scene->plant->groups[view->field.group];

@@ -89,6 +89,9 @@ void view_default_scale(const struct scene *scene, struct view *view);
 /* Returns whether the view shows values relative to their alarm limits (SHOW_OPERATOR). Such a view has its own colours, isolines and
    legend, and ignores colormap and color_scale. */
 bool view_is_operator(const struct view *view);
+/* Returns whether the view, or at least one half of a split view, shows values that depend on readings. false: it shows only distances or
+   materials, so its frames have no age of readings. */
+bool view_shows_readings(const struct view *view);
 void view_scale(const struct plant *plant, const struct view *view, struct scale *scale);
 /* Fills `lines` with the values at which a line is drawn, ascending: isolines, and edges of colour bands within the range.
    Returns the number of lines. */

@@ -19,7 +19,7 @@ import { BIN, missing, Program, runProgram, TinyPlant } from './support/tiny_pla
 const lacks = [...missing(), ...(existsSync(join(BIN, 'plantcast-video')) ? [] : ['plantcast-video']),
     ...(spawnSync('ffmpeg', ['-version']).error ? ['ffmpeg'] : [])];
 const options = { skip: lacks.length > 0 ? `not here: ${lacks.join(', ')}` : false, timeout: 240000 };
-const WIDTH = 320, HEIGHT = 180, FPS = 10, RECORDED_S = Number(process.env.VIDEO_S ?? sweep(20, 10));
+const WIDTH = 320, HEIGHT = 180, STRIP_PX = 26, FPS = 10, RECORDED_S = Number(process.env.VIDEO_S ?? sweep(20, 10));
 const READER = 'wall:long-password';
 const folder = folderOfTests();
 let plant, video, ports;
@@ -231,19 +231,41 @@ test('a named view is drawn with all its parameters, in perspective or orthograp
     const text = `group=temperature&show=operator&look=flat&colormap=viridis&ramp=10&range=0,50&isolines=20,40&light=1,1,2&ghost=P-101A&` +
         `split=group:pressure;look:glossy&clip=1,0,0,0.2&asset=E-101&tag=TI-1&strength=2&${camera}`;
     const whole = `group=pressure&hide=&clip=-1,-1,-1,5,5,5&split=same&${camera},6`;
-    const views = [['first', text], ['second', whole]].map(([id, view]) => `  - { id: ${id}, title: View ${id}, view: "${view}" }\n`);
+    const views = [['first', text], ['second', whole], ['near', `group=temperature&reach=0.1&${camera}`],
+        ['half', `group=temperature&split=reach_m:0.1&${camera}`], ['plain', `look=materials&${camera}`], ['then', `at=1&${camera}`]];
+    const lines = views.map(([id, view]) => `  - { id: ${id}, title: View ${id}, view: "${view}" }\n`);
     await plant.daemon.stop();
-    appendFileSync(plant.file, `views:\n${views.join('')}`);
+    appendFileSync(plant.file, `views:\n${lines.join('')}`);
     await plant.startDaemon();
-    for (const id of ['first', 'second']) {
+    const pictures = {};
+    // `near` and `half` limit the reach of sensors, which viewers may not do in a query; `then` shows the present in a video
+    for (const id of ['first', 'second', 'near', 'half', 'then']) {
         const program = await startVideo('--view', id, '--rtsp', String(port));
         const reader = new Reader(rtsp(port, ''), '-rtsp_transport', 'tcp');
         await reader.until(({ card }) => !card);
         assert.doesNotMatch(program.said, /no view|expected|unknown/);
+        if (id === 'near')
+            pictures.video = grey('-rtsp_transport', 'tcp', '-i', rtsp(port, ''));
         await reader.stop();
         await program.stop();
     }
+    for (const query of ['view=near', 'view=near&reach_m=none']) {
+        const url = `http://127.0.0.1:${plant.port}/snapshot.png?width=${WIDTH}&height=${HEIGHT - STRIP_PX}&${query}`;
+        pictures[query] = grey('-i', url);
+    }
+    // the middle of the picture, which shows the plant; the clock and the ages of values differ
+    const apart = (a, b) => difference(pictures[a], pictures[b], WIDTH, [0.2, 0.2, 0.75, 0.8]);
+    const near = apart('video', 'view=near'), far = apart('video', 'view=near&reach_m=none');
+    assert.ok(far > 3 * near, `the video differs by ${near} from the view, and by ${far} from the view with unlimited reach`);
 });
+
+// Returns the upper part of a picture of WIDTH, without the video's strip, as grey pixels. args: ffmpeg's arguments for its input.
+function grey(...args) {
+    const tall = HEIGHT - STRIP_PX, { stdout, stderr } = spawnSync('ffmpeg', ['-v', 'error', ...args, '-frames:v', '1', '-vf',
+        `crop=${WIDTH}:${tall}:0:0`, '-f', 'rawvideo', '-pix_fmt', 'gray', 'pipe:1'], { timeout: 30000 });
+    assert.equal(stdout.length, WIDTH * tall, String(stderr));
+    return stdout;
+}
 
 // Returns the mean difference of two grey pictures of that width within a box, whose sides are fractions of the picture's size.
 function difference(a, b, wide, [left, top, right, bottom]) {
@@ -288,24 +310,28 @@ test('cards, strip and legend are in the requested language', options, async () 
 
 test('a token restricted to one view shows that view and no other; revoking the token ends the picture', options, async () => {
     const tokens = join(plant.folder, 'tokens'), token = join(folder, 'token'), port = await freePort();
-    const made = runProgram('plantcast', ['token', 'add', tokens, '--role', 'viewer', '--name', 'lobby', '--views', 'first']);
+    const made = runProgram('plantcast', ['token', 'add', tokens, '--role', 'viewer', '--name', 'lobby', '--views',
+        'first,plain,then']);
     assert.equal(made.code, 0, made.err);
     writeFileSync(token, `${made.out.trim()}\n`);
     await plant.daemon.stop();
     await plant.startDaemon('--tokens', tokens, '--audit', join(folder, 'audit'));
     const start = (view) => startVideo('--view', view, '--token-file', token, '--rtsp', String(port));
-    for (const [view, shown] of [['second', false], ['first', true]]) {
+    // `plain` shows materials and no readings
+    for (const [view, refusal] of [['second', /rejects this token: .*“second” is not allowed: this token is for the views first/],
+        ['then', /the view shows a time in the past, but the video shows only the present/], ['plain'], ['first']]) {
         const program = await start(view), reader = new Reader(rtsp(port, ''), '-rtsp_transport', 'tcp');
-        if (shown)
-            await reader.until(({ card }) => !card);
+        if (refusal)
+            await program.line(refusal);
         else
-            await program.line(/rejects this token: .*“second” is not allowed: this token is for the views first/);
-        assert.equal(reader.frames.some(({ card }) => !card), shown);
-        if (shown) {
-            const refused = readFileSync(join(folder, 'audit'), 'utf8').split('/api/v1/views').length - 1;
+            await reader.until(({ card }) => !card);
+        assert.equal(reader.frames.some(({ card }) => !card), !refusal);
+        if (view === 'first') {
+            const count = () => readFileSync(join(folder, 'audit'), 'utf8').split('"refused"').length - 1, refused = count();
             // waits 6 s: a client that was permitted to list views would request them every 5 s, and this one must not
             await new Promise((done) => setTimeout(done, 6000));
-            assert.equal(readFileSync(join(folder, 'audit'), 'utf8').split('/api/v1/views').length - 1, refused);
+            assert.equal(count(), refused);
+            assert.ok(reader.frames.slice(reader.frames.findIndex(({ card }) => !card)).every(({ card }) => !card), 'a card');
             assert.equal(runProgram('plantcast', ['token', 'revoke', tokens, 'lobby']).code, 0);
             await reader.until(({ card }) => card);
         }

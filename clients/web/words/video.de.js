@@ -17,6 +17,7 @@ answers: der Server antwortet {}: {}
 views: eine Ansicht „{}“ gibt es nicht; es gibt: {}
 none: keine
 took: ein Bild dauerte {} s; erlaubt sind {} s; ein kleineres --size hilft
+past: die Ansicht zeigt einen Zeitpunkt in der Vergangenheit, das Video zeigt aber nur die Gegenwart
 earlier: der Server meldet das Alter seiner Werte nicht: er ist älter
 no_png: der Server sendete kein PNG von {}x{}
 no_answer: keine Antwort

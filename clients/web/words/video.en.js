@@ -17,6 +17,7 @@ answers: the server answers {}: {}
 views: there is no view '{}'; the views are: {}
 none: none
 took: a picture took {} s; the limit is {} s; a smaller --size helps
+past: the view shows a time in the past, but the video shows only the present
 earlier: the server does not report the age of its values: it is an older version
 no_png: the server did not send a PNG of {}x{}
 no_answer: no answer

@@ -165,8 +165,8 @@ int ask_snapshot(struct server_context *server, struct http_exchange *request)
     return result;
 }
 
-/* Adds a header with the age of the readings in the picture, for programs that process the picture. */
-static void say_values(const struct frame *frame, struct text *out)
+/* Adds a header with the age of the readings in the picture and the time zone of its clock, for programs that process the picture. */
+static void say_values(const struct plant *plant, const struct frame *frame, struct text *out)
 {
     text_add(out, "data_time_us=%lld, oldest_age_ms=", (long long)(frame->data_utc_ns / 1000));
     if (frame->oldest_age_ns == INT64_MAX)
@@ -177,6 +177,8 @@ static void say_values(const struct frame *frame, struct text *out)
         text_add(out, ", drawn_error=%g", frame->drawn_error[0]);
     if (frame->drawn_error[1] > 0)
         text_add(out, ", drawn_error_right=%g", frame->drawn_error[1]);
+    text_add(out, ", shows_readings=%s, past=%s, time_zone=%s", view_shows_readings(&frame->view) ? "yes" : "no",
+             frame->view.at_us ? "yes" : "no", plant->time_zone);
 }
 
 /* Adds a header with the plant's name, if the client may know the name and the name has at most NAME_BYTES. */
@@ -196,7 +198,7 @@ static void answer_picture(struct server_context *server, struct http_exchange *
     struct text values = { 0 };
     text_add(&values, "%s", "");
     if (packet) {
-        say_values(packet->frame, &values);
+        say_values(server->params.plant.scene->plant, packet->frame, &values);
         say_plant(server, request, &values);
     }
     request_forget(server, request);

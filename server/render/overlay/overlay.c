@@ -66,9 +66,7 @@ static void draw_header(struct pen *pen)
         format_age(pen, pen->frame->oldest_age_ns, age);
     else
         snprintf(age, sizeof(age), "%s", pen_word(pen, WORD_NO_VALUES));
-    const struct view *view = &pen->frame->view;
-    /* false: the picture shows distances or materials, which are not readings, so the header states no age of readings */
-    bool has_age = view->split || (view->field.show != SHOW_DISTANCE && view->look != LOOK_MATERIALS);
+    bool has_age = view_shows_readings(&pen->frame->view);
     bool unset = pen->frame->clock_unset, simulated = has_age && shows_simulated(pen);
     snprintf(lines[0], sizeof(lines[0]), "%s%s%s", clock, has_age ? "  ·  " : "", has_age ? age : "");
     snprintf(lines[1], sizeof(lines[1]), "%s%s%s", unset ? pen_word(pen, WORD_CLOCK_UNSET) : "", unset && simulated ? "  ·  " : "",
