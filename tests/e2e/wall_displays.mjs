@@ -141,6 +141,55 @@ test('an alarm appears in the pane meant for it, and disappears once acknowledge
         await plant.ask(`set ${tag} 20`);
 });
 
+test('an error in one pane does not stop the panes after it; a tag that a pane\'s page lacks yet is no error', options, async () => {
+    const other = await openPage(`${plant.url}?wall=room`, { viewport: { width: 960, height: 540 } }), own = other.page;
+    await own.waitForFunction(inner);
+    await own.locator('.clock b', { hasText: ':' }).waitFor();
+    const failing = own.waitForEvent('console', (message) => message.text().includes('no such pane'));
+    await own.evaluate(() => {
+        const [views, alarms] = globalThis.wall.panes, { tick } = alarms;
+        alarms.tick = () => { throw new Error('no such pane'); };
+        globalThis.restore = () => { alarms.tick = tick; };
+        const { model } = views.element.querySelector('iframe').contentWindow.plantcast.session, { tag } = model;
+        model.tag = (name) => (name === 'PI-1' ? null : tag.call(model, name));
+        globalThis.learn = () => { delete model.tag; };
+    });
+    await failing;
+    const clock = await own.locator('.clock b').textContent();
+    await own.waitForFunction((before) => document.querySelector('.clock b').textContent !== before, clock);
+    await own.evaluate(() => globalThis.restore());
+    await plant.ask('set PI-1 5');
+    await own.waitForFunction(() => !globalThis.wall.session.model.alarms.list().some(({ tag }) => tag.name === 'PI-1'));
+    await plant.ask('set PI-1 95');
+    await own.waitForFunction(() => globalThis.wall.call.shown?.startsWith('2/'));
+    const late = await own.locator('.clock b').textContent();
+    await own.waitForFunction((before) => document.querySelector('.clock b').textContent !== before, late);
+    assert.equal(await own.evaluate(() => globalThis.wall.panes[0].error), null);
+    await own.evaluate(() => globalThis.learn());
+    await own.locator('.pane.views.called h2', { hasText: 'PI-1' }).waitFor();
+    await plant.ask('set PI-1 5');
+    await other.close();
+});
+
+test('a display that cannot read the walls of the plant file tries again', options, async () => {
+    let requests = 0;
+    const arrange = (one) => one.route(/api\/v1\/walls/, (route) => (requests++ === 0 ? route.abort() : route.continue()));
+    const other = await openPage(`${plant.url}wall.html?wall=room&display=2`, { viewport: { width: 960, height: 540 } }, null, arrange);
+    await other.page.locator('.wrong').waitFor();
+    await other.page.locator('.pane.text p', { hasText: 'Clean F-101' }).waitFor();
+    // after another connection, the display says which display it is, even if the request fails again
+    const isKnown = () => globalThis.wall.session.walls?.displays.some(({ wall, display }) => wall === 'room' && display === 2);
+    await other.page.waitForFunction(isKnown);
+    requests = 0;
+    const again = () => new Promise((done) => {
+        globalThis.wall.session.on('welcome', done);
+        globalThis.wall.session.connection.socket.close();
+    });
+    await other.page.evaluate(again);
+    await other.page.waitForFunction(isKnown);
+    await other.close();
+});
+
 test('a second display shows its own panes', options, async () => {
     let answer; // delays the trend module until answer() is called, so that the pane's text `waiting for values` can be seen
     const held = new Promise((done) => { answer = done; });

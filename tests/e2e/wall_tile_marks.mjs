@@ -73,6 +73,14 @@ test('hidden alarms, and alarms of quantities not shown, are marked on the right
         assert.ok(x > 0 && x < 1 && y > 0.2 && y < 0.8, `the mark ${text} is at ${x}, ${y}`);
     }
     await pages[0].page.locator('.picture > h2', { hasText: '2 active, 2 unacknowledged' }).waitFor();
+    await mark(1, /PI-1 95\.?0* bar/).waitFor();
+    await plant.tell('set PI-1 97');
+    await mark(1, /PI-1 97\.?0* bar/).waitFor();
+    await plant.tell('fail PI-1');
+    await mark(1, /PI-1\s*$/).waitFor();
+    await plant.tell('release PI-1');
+    await plant.tell('set PI-1 95');
+    await mark(1, /PI-1 95\.?0* bar/).waitFor();
     assert.ok(await pages[0].page.locator('.picture > h2').evaluate(({ clientHeight, scrollWidth, parentNode }) => {
         const { fontSize } = getComputedStyle(parentNode);
         return clientHeight < 2.2 * parseFloat(fontSize) && scrollWidth <= parentNode.clientWidth;
@@ -95,6 +103,16 @@ test('hidden alarms, and alarms of quantities not shown, are marked on the right
     for (const i of [0, 1])
         await pages[i].page.waitForFunction(() => !document.querySelector('.marks .alarm'));
     await pages[0].page.locator('.picture > h2', { hasText: /^All of it · Temperature/ }).waitFor();
+});
+
+test('the title says whether all values or some are simulated', options, async () => {
+    const title = pages[0].page.locator('.picture > h2');
+    const cases = [[[true, false], / · Partly simulated$/], [[true, true], / · Simulated$/], [[false, false], / old$/]];
+    for (const [simulated, text] of cases) {
+        await pages[0].page.evaluate((all) => globalThis.wall.session.heard({ type: 'status', live: true,
+            links: all.map((one, i) => ({ source: `plc${i}`, up: true, simulated: one })) }), simulated);
+        await title.filter({ hasText: text }).waitFor();
+    }
 });
 
 test('notes and the desk\'s pointer are marked at their places', options, async () => {

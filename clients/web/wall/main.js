@@ -5,7 +5,7 @@ import { AlarmCall } from '../core/alarm_call.js';
 import { Connection } from '../core/connection.js';
 import { zoneClock } from '../core/format.js';
 import { health } from '../core/health.js';
-import { ask } from '../core/history.js';
+import { askInTime } from '../core/history.js';
 import { Session } from '../core/session.js';
 import { brightness, burnShift, millimetresPerPx, SPREAD_MS, wallFit } from '../core/wall.js';
 import { language, learnWords, say } from '../core/words.js';
@@ -21,7 +21,8 @@ import { areaOf, paneOf } from './panes.js';
 import { Pairing } from './pairing.js';
 import { tileOf } from './tile.js';
 
-const TICK_MS = 250, LOST_MS = 3000;
+// LOOK_MS: after a failed request for the walls of the plant file, the page tries again this much later
+const TICK_MS = 250, LOST_MS = 3000, LOOK_MS = 5000;
 // LEAST: minimum size of a display in units of the page (CSS pixels before scaling); LETTERS_MM: height in millimetres of the
 // letters of the message that the connection is lost
 const LEAST = { width: 560, height: 315 }, LETTERS_MM = 100;
@@ -99,17 +100,20 @@ function build(walls) {
 const sayWho = () => wall?.displays[number - 1] && !session.model?.plant.only &&
     session.post({ type: 'display', wall: wall.id, display: number });
 
+let looking;
 async function look() {
+    clearTimeout(looking);
     try {
-        const { walls } = await (await ask('api/v1/walls', {}, session.token)).json(), now = JSON.stringify(walls);
+        const { walls } = await askInTime('api/v1/walls', {}, session.token), now = JSON.stringify(walls);
         if (now !== shape)
             build(walls);
         shape = now;
-        sayWho();
     } catch (error) {
         if (!shape)
             sayWrong(error.message);
+        looking = setTimeout(() => session.welcomed && look(), LOOK_MS);
     }
+    sayWho();
 }
 
 // --- periodic work
@@ -117,6 +121,18 @@ async function look() {
 // OPENED: time of day when the page was opened, by the display's own clock
 const lostWords = make('p'), lostSelf = make('p', { class: 'self' }), OPENED = new Date().toLocaleTimeString('en-GB');
 byId('lost').replaceChildren(lostWords, lostSelf);
+
+// Updates a pane. An error in one pane must not stop the other panes; reports an error once.
+function tickPane(pane, now) {
+    try {
+        pane.tick(now);
+        pane.error = null;
+    } catch (error) {
+        if (pane.error !== error.message)
+            console.error(error);
+        pane.error = error.message;
+    }
+}
 
 let lostAt = null;
 function tick() {
@@ -137,7 +153,7 @@ function tick() {
     if (gone)
         return;
     for (const pane of panes)
-        pane.tick(now);
+        tickPane(pane, now);
     if (wall) {
         const [hours, minutes] = zoneClock(model.plant.time_zone)(session.clockUs() / 1000).time.split(':').map(Number);
         const calls = model.alarms.list().some(({ waiting }) => waiting);

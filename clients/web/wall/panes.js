@@ -167,6 +167,8 @@ function ViewsPane(pane, context) {
         setText(about, group ? [quantityText(group), ageOf(ageMs)].join(' · ') : '');
         const alarms = session.model.alarms.list(), nowUs = session.clockUs();
         const alarm = pane.on_alarm ? call.next(alarms, now, nowUs) : null;
+        if (alarm && !model.tag(alarm.tag.name))
+            return; // after a reload of the plant, the page in the iframe does not know a new tag until it has connected again
         const order = session.walls?.list.find(({ id }) => id === place) ?? null;
         const rests = order || alarms.some(({ waiting }) => waiting) || (pane.on_alarm && call.isFlood(alarms, nowUs));
         if (!rests && pane.items.length > 1 && changedAt !== null && now - changedAt >= (pane.stops?.[at].dwell_s ?? pane.every_s) * 1000) {

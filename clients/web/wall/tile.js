@@ -7,6 +7,7 @@ import { projector } from '../core/camera.js';
 import { Connection } from '../core/connection.js';
 import { browserDecoding } from '../core/decoding.js';
 import { ageText, unitText, valueText } from '../core/format.js';
+import { simulatedText } from '../core/health.js';
 import { quantityText } from '../core/model.js';
 import { newView, viewOf } from '../core/named_views.js';
 import { inForce, placeOf as placeOfNote } from '../core/notes.js';
@@ -94,10 +95,10 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
         const view = session.views.find(({ id }) => id === pane.items[at]);
         const wanted = alarm ? `${alarm.tag.name}/${alarm.kind}/${isGone(alarm.state)}` : JSON.stringify([at, order, view]);
         wrong = !alarm && !order?.view && view?.wrong ? view : null;
-        if (wanted === shown)
+        const tag = alarm && session.model.tag(alarm.tag.name);
+        if (wanted === shown || (alarm && !tag)) // after a reload of the plant, one of the two sessions may know its new tags first
             return;
         if (alarm) {
-            const tag = session.model.tag(alarm.tag.name);
             // the parameters of a new view: those of the pane's view could hide the equipment, or not show readings
             session.setParams(newView(session, tag.group));
             session.post({ type: 'fit', seq: ++session.fitSeq, id: tag.name });
@@ -124,7 +125,7 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
             active + waiting > 0 && say(counts, { active, waiting }),
             group && quantityText(group),
             group && say('walls.age', { age: ageText(model.oldestAgeMs(group.id, clock.now())) }),
-            words.model.links.some(({ simulated }) => simulated) && say('simulated.all'),
+            simulatedText(words),
         ].filter(Boolean).join(' · ');
         title.replaceChildren(...(alarm ? [badge(alarm.priority, isGone(alarm.state)), ` ${say(`kind.${alarm.kind}`)} ${alarm.tag.name} `]
             : []), parts);
@@ -222,8 +223,12 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
             pointer = null;
         if (!frame || !words.model || !session.model)
             return;
+        const alarms = words.model.alarms.list().map(({ id, state, priority, tag }) => {
+            const { value, quality } = words.model.readings[tag.index] ?? {};
+            return [id, state, priority, value, quality];
+        });
         const now = JSON.stringify([frame.seq, session.tiles.part, pointer, inForce(session.notes, words.clockUs(), session.time.atUs),
-            words.model.alarms.list().map(({ id, state, priority }) => [id, state, priority])]);
+            alarms]);
         if (now !== marksOf)
             drawMarks();
         marksOf = now;
