@@ -89,6 +89,24 @@ test('a marker is dragged over the surface, and one undo step reverts the whole 
     await says('#engineer .note', 'There is no surface');
 });
 
+test('a new value for the card of a point does not move the tag that is being placed', options, async () => {
+    const before = await moved(), hint = await text('#engineer .hint');
+    assert.match(hint, /^TI-9: click on the surface/);
+    await page.evaluate(() => {
+        const { modules, viewport: { width, height } } = globalThis.plantcast;
+        modules.use('place', (card) => card.open(width / 2, height / 2));
+    });
+    await page.waitForFunction(() => globalThis.plantcast.modules.there('place')?.picked);
+    await page.evaluate(() => {
+        const card = globalThis.plantcast.modules.there('place');
+        globalThis.answered = new Promise((done) => { globalThis.plantcast.session.on('picked', done); });
+        card.ask();
+        return globalThis.answered;
+    });
+    assert.deepEqual(await moved(), before);
+    await page.evaluate(() => globalThis.plantcast.modules.there('place').close());
+});
+
 test('the panel reports coverage gaps', options, async () => {
     await button('Coverage gaps').click();
     await says('#engineer .gaps', 'Coverage gaps: Temperature.*No sensor is off its surface.*' +

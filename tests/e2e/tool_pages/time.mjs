@@ -482,6 +482,25 @@ test('marks and buttons lead to an alarm\'s instant, from alarm to alarm, and to
     await waitForHealth(page, 'live');
 });
 
+test('alarms that cannot be read are reported, and not shown as absent', options, async () => {
+    const path = /api\/v1\/alarms\/journal/, marks = () => page.locator('#time-track .alarm').count();
+    await page.locator('#time-track .alarm').first().waitFor({ state: 'attached' });
+    await page.evaluate(() => { const { session, showTrend } = globalThis.plantcast; showTrend(session.model.tag('TI-2')); });
+    await page.waitForFunction(() => globalThis.plantcast.trends.alarms.get('TI-2')?.length > 0);
+    await page.route(path, (route) => route.abort());
+    await page.locator('#time-before').click();
+    await page.locator('#toast', { hasText: /^Alarms could not be read: ./ }).waitFor();
+    await page.locator('#time-span').selectOption('28800');
+    await page.locator('#time-alarms', { hasText: /^Marks may be missing or old: ./ }).waitFor();
+    assert.ok(await marks() > 0, 'the marks of the last answer stay');
+    await page.locator('#trend-note', { hasText: /Alarms could not be read: ./ }).waitFor();
+    assert.ok(await page.evaluate(() => globalThis.plantcast.trends.alarms.get('TI-2').length) > 0);
+    await page.unroute(path);
+    await page.locator('#time-span').selectOption('3600');
+    await page.locator('#time-alarms', { hasText: /^\d+ alarms? raised$/ }).waitFor();
+    await page.waitForFunction(() => !document.getElementById('trend-note').textContent.includes('could not be read'));
+});
+
 test('two times are compared side by side, with one camera', options, async () => {
     const us = afterBegin(900), inner = () => page.frames().find((frame) => frame.url().includes('pane=compare'));
     if (!await page.locator('#timeline').isVisible())
@@ -497,6 +516,20 @@ test('two times are compared side by side, with one camera', options, async () =
     await page.waitForFunction(() => globalThis.plantcast.session.camera.eye[0] === 8);
     await page.evaluate(() => globalThis.plantcast.session.setParams({ group: 'pressure' }));
     await inner().waitForFunction(() => globalThis.plantcast.session.shown.group === 'pressure');
+    const bothHave = async (change, wanted) => {
+        await page.evaluate((params) => globalThis.plantcast.session.setParams(params), change);
+        await becomes(() => inner().evaluate(() => {
+            const { show, sensor, sensors, baseline, range } = globalThis.plantcast.session.confirmed;
+            return [show, sensor, sensors['TI-1']?.strength ?? null, baseline?.name ?? null, ...show === 'distance' ? [] : range];
+        }), wanted, JSON.stringify(change));
+    };
+    await bothHave({ group: 'temperature', show: 'distance', sensor: 'TI-1' }, ['distance', 'TI-1', null, null]);
+    await bothHave({ sensor: 'TI-2' }, ['distance', 'TI-2', null, null]);
+    await bothHave({ show: 'value', sensors: { 'TI-1': { strength: 2 } } }, ['value', 'TI-2', 2, null, 0, 100]);
+    await bothHave({ sensors: { 'TI-1': null } }, ['value', 'TI-2', null, null, 0, 100]);
+    await bothHave({ show: 'difference', baseline: { set: 'Start-up' } }, ['difference', 'TI-2', null, 'Start-up', -25, 25]);
+    await bothHave({ baseline: 'now' }, ['value', 'TI-2', null, null, 0, 100]);
+    await bothHave({ show: 'value', baseline: null, group: 'pressure' }, ['value', null, null, null, 0, 10]);
     assert.equal(await inner().locator('.toolbar').isVisible(), false);
     const [left, right] = await Promise.all(['#viewport', '#compare-half'].map((id) => page.locator(id).boundingBox()));
     assert.ok(right.x >= left.x + left.width - 1 && Math.abs(right.width - left.width) < 8, JSON.stringify([left, right]));
