@@ -96,7 +96,7 @@ test('hidden alarms, and alarms of quantities not shown, are marked on the right
     assert.deepEqual(cut, [false, false, false]);
     for (const [i, { page }] of pages.entries())
         await shoot(page, `wall-tile-marks-${i + 1}`);
-    said({ type: 'alarm', action: 'acknowledge', alarms: [['TI-2', 'H'], ['PI-1', 'H']], name: 'kim' });
+    said({ type: 'alarm', action: 'acknowledge', alarms: [['TI-2', 'H'], ['PI-1', 'H'], ['PI-1', 'BAD']], name: 'kim' });
     await pages[0].page.locator('.picture > h2', { hasText: '2 active, 0 unacknowledged' }).waitFor();
     await plant.tell('set TI-2 20');
     await plant.tell('set PI-1 5');
