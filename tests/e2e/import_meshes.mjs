@@ -62,6 +62,32 @@ test('units and up axis are guessed and reported, or taken from the options', { 
     assert.match(plantcast('nodes', join(folder, 'a.dae'), '--units', 'mm').stderr, /COLLADA files state their own units/);
 }));
 
+// The wedge in surveyed metres, 5,800 km from the origin, where positions stored as float have steps of 0.5 m.
+const PLACE = [431250.137, 5812345.678, 12.5];
+const surveyed = (text, word) => text.replace(new RegExp(`^${word} (\\S+) (\\S+) (\\S+)`, 'gm'), (_, ...p) =>
+    `${word} ${PLACE.map((v, axis) => (v + Number(p[axis])).toFixed(3)).join(' ')}`);
+
+test('a model far from the origin keeps its size in OBJ, and is reported in other formats', { skip }, () => withMaterials((folder) => {
+    const box = boxed(folder, 'far.obj', surveyed(obj(), 'v'), '--units', 'm', '--up', 'y');
+    assert.ok(near(box.size, [2, 1, 0.5]), JSON.stringify(box.size));
+    assert.ok([431251.137, -12, 5812345.928].every((v, k) => Math.abs(box.centre[k] - v) < 0.1), JSON.stringify(box.centre));
+    const lines = (name, bytes) => {
+        writeFileSync(join(folder, name), bytes);
+        const { status, stdout, stderr } = plantcast('import', join(folder, name), '-o', join(folder, `plant of ${name}`),
+            '--mesh-units', 'm');
+        assert.equal(status, 0, stderr);
+        return stdout;
+    };
+    const error = /error: the model has coordinates up to \d{7} m from its origin: positions are rounded to steps of (\S+) mm/;
+    assert.doesNotMatch(lines('far.obj', surveyed(obj(), 'v')), /rounded/);
+    assert.doesNotMatch(lines('near.stl', stl()), /rounded/);
+    assert.equal(error.exec(lines('far.stl', surveyed(stl(), 'vertex')))?.[1], '500');
+    const moved = dae(1).replace('<node id="n2" name="쐐기">', '$&<translate>0 0 5812345.678</translate>');
+    assert.equal(error.exec(lines('far.dae', moved))?.[1], '500');
+    // a second vertex at the origin prevents the move
+    assert.equal(error.exec(lines('wide.obj', surveyed(obj(), 'v').replace('usemtl', 'v 0 0 0\nf 1 2 7\nusemtl')))?.[1], '500');
+}));
+
 test('an STL file in capitals is read', { skip }, () => withMaterials((folder) => {
     const { size, list } = boxed(folder, 'a.stl', stl().replace(/.*/g, (line) => line.toUpperCase()));
     assert.ok(near(size, [2, 1, 0.5]) && list.length > 0, JSON.stringify(size));

@@ -35,6 +35,9 @@ constexpr size_t MOST_NAMED = 20;
 /* Size in metres of the largest plausible model. If a model without a unit would be larger than this in metres, its unit is
    assumed to be the millimetre. */
 constexpr double LONGEST_IN_METRES = 300;
+constexpr double COARSE_M = 1e-3; /* spacing in metres of the positions that Assimp can represent, above which the import reports it */
+/* An OBJ file whose distance from the origin exceeds this multiple of its size is moved to the origin before Assimp reads it. */
+constexpr double FAR_SIZES = 4;
 
 struct format {
     const char *ending;
@@ -136,6 +139,77 @@ std::string with_small_words(std::string text)
     return text;
 }
 
+/* Reads the position on a line `v X Y Z` of an OBJ file. Returns the number of bytes up to the end of Z, or 0 if Assimp may read
+ * the line in another way: as homogeneous coordinates, or as more or less than one line. */
+size_t obj_position(const std::string &line, double position[3])
+{
+    const char *at = line.c_str() + 1;
+    for (int axis = 0; axis < 3; axis++) {
+        char *end;
+        position[axis] = strtod(at, &end);
+        if (end == at || (*end && !isspace(static_cast<unsigned char>(*end))))
+            return 0;
+        at = end;
+    }
+    const size_t used = static_cast<size_t>(at - line.c_str()), next = line.find_first_not_of(" \t\r", used);
+    const size_t end = std::min(line.find_first_of(" \t\r", next), line.size());
+    const bool fourth = next != std::string::npos && line.find_first_not_of(" \t\r", end) == std::string::npos;
+    const bool joined = line.find('\\') != std::string::npos || line.find('\r') < line.size() - 1;
+    return fourth || joined ? 0 : used;
+}
+
+bool finite(const double position[3])
+{
+    return std::isfinite(position[0]) && std::isfinite(position[1]) && std::isfinite(position[2]);
+}
+
+/* Moves the positions of an OBJ file to the origin if they are far from it, because Assimp stores positions as float: at 5,800 km from
+ * the origin, a float has steps of 0.5 m. Sets `offset` to the vector that the file's positions were reduced by. */
+void shift_obj(std::string *text, double offset[3])
+{
+    double low[3] = { INFINITY, INFINITY, INFINITY }, high[3] = { -INFINITY, -INFINITY, -INFINITY }, position[3], size = 0, far = 0;
+    const auto is_vertex = [text](size_t at) {
+        at = std::min(text->find_first_not_of(" \t", at), text->size());
+        return text->compare(at, 2, "v ") == 0 || text->compare(at, 2, "v\t") == 0;
+    };
+    std::fill(offset, offset + 3, 0.0);
+    for (size_t at = 0, end; at < text->size(); at = end + 1) {
+        end = std::min(text->find('\n', at), text->size());
+        if (!is_vertex(at))
+            continue;
+        if (obj_position(text->substr(at, end - at), position) == 0)
+            return;
+        for (int axis = 0; axis < 3 && finite(position); axis++) {
+            low[axis] = std::fmin(low[axis], position[axis]);
+            high[axis] = std::fmax(high[axis], position[axis]);
+        }
+    }
+    for (int axis = 0; axis < 3 && low[axis] <= high[axis]; axis++) {
+        size = std::fmax(size, high[axis] - low[axis]);
+        offset[axis] = std::round(low[axis] / 2 + high[axis] / 2);
+        far = std::fmax(far, std::fabs(offset[axis]));
+    }
+    if (!(far > FAR_SIZES * size)) {
+        std::fill(offset, offset + 3, 0.0);
+        return;
+    }
+    std::string moved;
+    for (size_t at = 0, end; at < text->size(); at = end + 1) {
+        end = std::min(text->find('\n', at), text->size());
+        const std::string line = text->substr(at, end - at);
+        const size_t used = is_vertex(at) ? obj_position(line, position) : 0;
+        if (used > 0 && finite(position)) {
+            char numbers[100];
+            snprintf(numbers, sizeof(numbers), "v %.9g %.9g %.9g", position[0] - offset[0], position[1] - offset[1],
+                     position[2] - offset[2]);
+            moved += numbers + line.substr(used) + "\n";
+        } else {
+            moved += line + "\n";
+        }
+    }
+    *text = moved;
+}
+
 Assimp::IOStream *of_text(const std::string &text)
 {
     auto *copy = new uint8_t[text.size() + 1];
@@ -151,8 +225,10 @@ struct files : Assimp::DefaultIOSystem {
     const char *asked;
     /* true: the file has been searched for lost shapes; Assimp opens it several times, but one search is enough */
     bool searched = false;
+    double *offset; /* vector by which the positions of an OBJ file are reduced (shift_obj) */
 
-    files(text_encoding *encoding_of_all, const char *asked_for) : encoding(encoding_of_all), asked(asked_for)
+    files(text_encoding *encoding_of_all, const char *asked_for, double offset_of_obj[3])
+        : encoding(encoding_of_all), asked(asked_for), offset(offset_of_obj)
     {
     }
     Assimp::IOStream *Open(const char *path, const char *mode) override
@@ -196,8 +272,10 @@ struct files : Assimp::DefaultIOSystem {
         if (obj && !searched)
             assimp_losses_of_obj(text);
         searched |= dae || obj;
-        if (obj)
+        if (obj) {
             keep_blanks(&text[0], text.size(), false);
+            shift_obj(&text, offset);
+        }
         return of_text(text);
     }
 };
@@ -245,6 +323,53 @@ double longest_side(const aiScene *scene)
     return longest;
 }
 
+/* Distance of a model from its origin, and the resulting spacing of the positions that Assimp can represent as float. */
+struct rounding {
+    double distance = 0, spacing = 0;
+
+    void add(const aiVector3D &v, double scale)
+    {
+        const float far = std::fmax(std::fabs(v.x), std::fmax(std::fabs(v.y), std::fabs(v.z)));
+        if (!std::isfinite(far) || !std::isfinite(scale))
+            return;
+        distance = std::fmax(distance, static_cast<double>(far) * scale);
+        spacing = std::fmax(spacing, (static_cast<double>(std::nextafter(far, INFINITY)) - static_cast<double>(far)) * scale);
+    }
+};
+
+/* Adds the positions of all meshes below a node, and the translations of the nodes that have them. above: the sum of the nodes above;
+ * scale: the scale of the nodes above. Each position is measured in the frame in which Assimp stores it. */
+void add_rounding(const aiScene *scene, const aiNode *node, rounding above, double scale, rounding *out)
+{
+    const aiMatrix4x4 &m = node->mTransformation;
+    above.add(aiVector3D(m.a4, m.b4, m.c4), scale);
+    scale *= static_cast<double>(std::fmax(aiVector3D(m.a1, m.b1, m.c1).Length(),
+                                           std::fmax(aiVector3D(m.a2, m.b2, m.c2).Length(), aiVector3D(m.a3, m.b3, m.c3).Length())));
+    for (unsigned k = 0; k < node->mNumMeshes; k++) {
+        const aiMesh *mesh = scene->mMeshes[node->mMeshes[k]];
+        rounding found = above;
+        for (unsigned i = 0; i < mesh->mNumVertices; i++)
+            found.add(mesh->mVertices[i], scale);
+        if ((mesh->mPrimitiveTypes & aiPrimitiveType_TRIANGLE) != 0) {
+            out->distance = std::fmax(out->distance, found.distance);
+            out->spacing = std::fmax(out->spacing, found.spacing);
+        }
+    }
+    for (unsigned i = 0; i < node->mNumChildren; i++)
+        add_rounding(scene, node->mChildren[i], above, scale, out);
+}
+
+/* Reports a model that is so far from its origin that its shapes are visibly deformed. m: metres per unit of the model. */
+void say_rounding(const aiScene *scene, double m)
+{
+    rounding found;
+    add_rounding(scene, scene->mRootNode, rounding(), m, &found);
+    if (found.spacing > COARSE_M)
+        printf("error\t1\tthe model has coordinates up to %.0f m from its origin: positions are rounded to steps of %.3g mm: export the "
+               "model with an origin near the plant\n",
+               found.distance, found.spacing * 1000);
+}
+
 /* Returns centimetres per unit of an FBX file, and its up axis. Returns 1 if the root node has a transform, because newer versions of
  * Assimp put units and axes into that transform. */
 double fbx_axes(const aiScene *scene, const char **axis)
@@ -261,8 +386,9 @@ double fbx_axes(const aiScene *scene, const char **axis)
     return std::isfinite(centimetres) && centimetres > 0 ? centimetres : 1;
 }
 
-/* Computes the root node's transform from the model's unit and up axis: the user's choice, else the file's, else a guess. */
-void root_matrix(const aiScene *scene, const format &from, const char *units, const char *up, double out[16])
+/* Computes the root node's transform from the model's unit and up axis: the user's choice, else the file's, else a guess. offset: vector
+ * in units of the model, which the transform adds to all positions. */
+void root_matrix(const aiScene *scene, const format &from, const char *units, const char *up, const double offset[3], double out[16])
 {
     const char *unit = strcmp(units, "-") != 0 ? units : from.unit;
     if (!unit) {
@@ -283,6 +409,10 @@ void root_matrix(const aiScene *scene, const format &from, const char *units, co
     const double y_up[16] = { m, 0, 0, 0, 0, m, 0, 0, 0, 0, m, 0, 0, 0, 0, 1 },
                  z_up[16] = { m, 0, 0, 0, 0, 0, -m, 0, 0, m, 0, 0, 0, 0, 0, 1 };
     memcpy(out, axis[0] == 'y' ? y_up : z_up, sizeof(y_up));
+    for (int row = 0; row < 3; row++)
+        for (int axis_of_file = 0; axis_of_file < 3; axis_of_file++)
+            out[12 + row] += out[4 * axis_of_file + row] * offset[axis_of_file];
+    say_rounding(scene, m);
 }
 
 /* --- meshes ---------------------------------------------------------------------------------------------------- */
@@ -543,7 +673,8 @@ void convert(const char *input, const char *output, const char *units, const cha
        mesh */
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, true);
     text_encoding of_file;                             /* encoding in which text files are decoded before Assimp reads them */
-    importer.SetIOHandler(new files(&of_file, asked)); /* the importer takes ownership of this object */
+    double offset[3] = { 0, 0, 0 };
+    importer.SetIOHandler(new files(&of_file, asked, offset)); /* the importer takes ownership of this object */
     std::map<std::string, size_t> logged;
     Assimp::DefaultLogger::create("", Assimp::Logger::NORMAL, 0);
     /* the logger takes ownership of the log stream */
@@ -570,7 +701,7 @@ void convert(const char *input, const char *output, const char *units, const cha
     r.materials.assign(scene->mNumMaterials, -2);
     const char *slash = strrchr(input, '/'), *base = slash ? slash + 1 : input;
     double matrix[16];
-    root_matrix(scene, from, units, up, matrix);
+    root_matrix(scene, from, units, up, offset, matrix);
     int root = glb_scene_add_node(r.out, -1, std::string(base, strlen(base) - strlen(from.ending)).c_str(), -1, matrix);
     add(&r, scene->mRootNode, transform(), root, 0);
     if (!r.lines.empty())
