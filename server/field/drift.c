@@ -249,6 +249,8 @@ const char *drift_unknown_cause(const struct drift *drift, size_t sensors)
         return "";
     if (sensors < MIN_SENSORS)
         return "fewer than 3 sensors of the group on the asset";
+    if (sensors > NEIGHBOURS_MOST)
+        return "more than 512 sensors of the group on the asset";
     if (drift->hours < DRIFT_HOURS_LEAST)
         return "fewer than 84 hours with readings of the sensor and its neighbours";
     if (drift->error * DRIFT_ERRORS <= drift->scatter * DRIFT_SIGMAS)

@@ -9,7 +9,7 @@
 #include "scene/scene.h"
 #include "value/snapshot.h"
 
-#define NEIGHBOURS_MOST 512
+#define NEIGHBOURS_MOST 512 /* drift.c and the pages state this number in words */
 
 struct neighbour {
     int tag;

@@ -186,6 +186,8 @@ TEST(test_what_cannot_be_told_is_unknown)
     assert_true(isnan(drift.change) && drift.hours == DRIFT_HOURS_LEAST - 1);
     assert_non_null(strstr(drift_unknown_cause(&drift, 3), "fewer than 84 hours"));
     assert_non_null(strstr(drift_unknown_cause(&drift, 2), "fewer than 3 sensors of the group"));
+    assert_non_null(strstr(drift_unknown_cause(&drift, NEIGHBOURS_MOST), "fewer than 84 hours"));
+    assert_non_null(strstr(drift_unknown_cause(&drift, NEIGHBOURS_MOST + 1), "more than 512 sensors"));
     for (int h = 0; h < DRIFT_HOURS; h++) {
         predicted[h] = 50 + h;
         values[h] = 50 + 1.1 * h;
