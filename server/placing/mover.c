@@ -3,6 +3,7 @@
 #include "placing/mover.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/mem.h"
 #include "scene/manifest.h"
@@ -20,6 +21,13 @@ static void shape_of(const struct scene_asset *asset, struct relocation_shape *s
                                         .tolerance_m = asset->plant->tolerance_m };
 }
 
+/* Returns whether plantcast-prep has not prepared the asset again since the daemon opened the asset's file. */
+static bool is_same_file(const struct scene_asset *asset, const struct manifest_entry *entry)
+{
+    const char *slash = strrchr(asset->file->path, '/');
+    return entry->file && !strcmp(slash ? slash + 1 : asset->file->path, entry->file);
+}
+
 struct relocation *mover_create(struct log *log, struct workers *workers, const struct scene *scene, const char *folder, int asset)
 {
     const struct scene_asset *of = &scene->assets[asset];
@@ -29,7 +37,7 @@ struct relocation *mover_create(struct log *log, struct workers *workers, const 
     shape_of(of, &shape);
     bool read = manifest_read(log, folder, &manifest);
     const struct manifest_entry *entry = read ? manifest_find(&manifest, of->plant->id) : NULL;
-    if (entry && entry->surface) {
+    if (entry && entry->surface && is_same_file(of, entry)) {
         shape.surface_path = path = mem_printf("%s/%s", folder, entry->surface);
         /* the prepared surface is in the file KEY.surface, with the key in hexadecimal digits */
         shape.surface_key = strtoull(entry->surface, NULL, 16);

@@ -9,10 +9,13 @@
 
 #include "base/clock.h"
 #include "base/files/cache_file.h"
+#include "placing/mover.h"
 #include "protocol/asset_distance.h"
 #include "scene/asset.h"
+#include "scene/scene_create.h"
 #include "surface/surface_store.h"
 #include "tests/support/cad.h"
+#include "tests/support/model_maker.h"
 #include "tests/support/prep_case.h"
 #include "tests/support/sleep.h"
 
@@ -235,6 +238,56 @@ TEST(a_moved_sensor_has_the_distances_that_would_be_stored)
     shape.surface_key++; /* the key no longer fits the stored surface, so it must not be used but be computed again */
     try_sensors(asset, &shape, sights, as_made_anew);
     asset_unref(&asset);
+}
+
+/* --- after plantcast-prep ran again, without a reload --------------------------------------------------------------------------- */
+
+static void prepare_plate(struct prep_case *c, int slot)
+{
+    struct cad_random random;
+    struct cad *cad = test_cad();
+    cad_random_start(&random);
+    cad_slotted_plate(cad, &random, 100, 60, 4, 4, 50, 2, slot);
+    maker_write_cad(c->folder, "model.glb", "plate", cad);
+    prep_case_plant(c, "plant: { name: Plate }\n"
+                       "assets: [{ id: P, model: model.glb, up: z }]\n"
+                       "groups: [{ id: t, unit: K, min: 0, max: 1 }]\n"
+                       "tags: tags.csv\n");
+    prep_case_tags(c, "a,,,,t,P,,0.5,0.5,0\n");
+    prep_case_expect(c, "$PLANT", 0);
+}
+
+/* The daemon shows the old model until it reloads the plant. Until then, distances are those on the old model, too, not on the
+   surface that plantcast-prep has stored for the new one, which has a slot. */
+TEST(a_moved_sensor_stays_on_the_model_that_is_shown)
+{
+    struct prep_case *c = *state;
+    const double from[3] = { 1, 0.5, 0 };
+    struct result_box box;
+    prepare_plate(c, 0);
+    struct plant *plant = plant_load_or_print(c->plant);
+    assert_non_null(plant);
+    char *folder = test_memory(plant_prepared_folder(plant));
+    struct scene *scene = scene_create(the_log, plant, folder);
+    assert_non_null(scene);
+    prepare_plate(c, 50);
+    struct relocation *relocation = mover_create(the_log, workers, scene, folder, 0);
+    const struct asset_view *view = &scene->assets[0].file->view;
+    double worst_m = 0, moved_m[3];
+    for (int axis = 0; axis < 3; axis++)
+        moved_m[axis] = from[axis] - view->header->origin_m[axis];
+    box_init(&box);
+    assert_true(relocation_request(relocation, moved_m, put_into_box, &box) > 0);
+    wait_for(&box, 1);
+    assert_int_equal(box.result.status, RELOCATION_DONE);
+    for (size_t v = 0; v < view->header->vertex_count; v++)
+        worst_m = fmax(worst_m, fabs((double)box.result.geodesic_m[v] - distance(view->positions_m[v], moved_m)));
+    print_message("# distances differ by up to %.4f m from those on the plate without a slot\n", worst_m);
+    assert_true(worst_m < 0.05);
+    mem_free(box.result.geodesic_m);
+    relocation_destroy(&relocation);
+    scene_destroy(&scene);
+    plant_destroy(&plant);
 }
 
 /* --- refused, cancelled, broken ----------------------------------------------------------------------------------------------- */
