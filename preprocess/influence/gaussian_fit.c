@@ -166,7 +166,7 @@ static void try_share(struct gaussian_fit *fit, double range_m, double share, do
 }
 
 /* Finds the best noise share (noise / deviation) for a range. Parameters given in the plant file stay fixed. If the noise is
- * given, the search varies the deviation instead, and the share is noise / deviation. */
+ * given, the search varies the deviation instead, and the share is noise / deviation. Without noise, the share is the smallest one. */
 static void try_range(struct gaussian_fit *fit, double range_m)
 {
     const struct gaussian_params *stated = fit->stated;
@@ -177,7 +177,9 @@ static void try_range(struct gaussian_fit *fit, double range_m)
             share = max_of(share, GAUSSIAN_LEAST_NOISE);
             if (!isnan(stated->noise) && !isnan(stated->deviation))
                 share = max_of(stated->noise / stated->deviation, GAUSSIAN_LEAST_NOISE);
-            double deviation = isnan(stated->noise) || !isnan(stated->deviation) ? stated->deviation : stated->noise / share;
+            if (stated->noise == 0)
+                share = GAUSSIAN_LEAST_NOISE;
+            double deviation = !(stated->noise > 0) || !isnan(stated->deviation) ? stated->deviation : stated->noise / share;
             try_share(fit, range_m, share, deviation);
         }
         centre = fit->best.deviation > 0 ? fit->best.noise / fit->best.deviation : GAUSSIAN_LEAST_NOISE;
@@ -343,8 +345,12 @@ bool gaussian_fit(struct gaussian_params *params, const struct gaussian_data *da
                  "the Gaussian process (gp) cannot be fitted, because the sensors on each connected part always have equal "
                  "readings: set `range_m`, `noise` and `deviation` instead");
         good = false;
-    } else
-        *params = fit.best;
+    } else {
+        /* keeps stated parameters to the last bit, which the search may round: the daemon compares them with the plant file */
+        params->range_m = isnan(params->range_m) ? fit.best.range_m : params->range_m;
+        params->noise = isnan(params->noise) ? fit.best.noise : params->noise;
+        params->deviation = isnan(params->deviation) ? fit.best.deviation : params->deviation;
+    }
     finish_fit(&fit);
     return good;
 }

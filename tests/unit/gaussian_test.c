@@ -503,6 +503,17 @@ TEST(test_fit_finds_what_made_the_readings)
     assert_true(p.deviation > 4.8 && p.deviation < 7.5);
     assert_true(gaussian_fit(&stated, &data, 0.1, 6, why));
     assert_true(stated.range_m == 0.7 && fabs(stated.deviation - 6) < 1e-9 && stated.noise > 0.7 && stated.noise < 0.9);
+    /* stated parameters stay as they are, to the last bit: exp(log(3)) is not 3, and 0.9 / 7 * 7 is not 0.9 */
+    const struct gaussian_params exact[] = { { 3, (double)NAN, (double)NAN }, { 0.7, 0, (double)NAN }, { (double)NAN, 0.9, 7 } };
+    for (size_t i = 0; i < sizeof(exact) / sizeof(*exact); i++) {
+        stated = exact[i];
+        if (!gaussian_fit(&stated, &data, 0.1, 6, why))
+            fail_msg("%zu: %s", i, why);
+        assert_true(isnan(exact[i].range_m) || stated.range_m == exact[i].range_m);
+        assert_true(isnan(exact[i].noise) || stated.noise == exact[i].noise);
+        assert_true(isnan(exact[i].deviation) || stated.deviation == exact[i].deviation);
+        assert_true(stated.range_m > 0 && stated.noise >= 0 && stated.deviation > 0);
+    }
     table.count = 2;
     assert_false(gaussian_fit(&p, &data, 0.1, 6, why));
     readings_table_finish(&table);
