@@ -181,6 +181,31 @@ T6;temperature;second;TT-9;;;;;f
     assert.deepEqual(filesOf(plant), first);
 }));
 
+test('a name that occurs several times in a model moves no tag to other equipment', { skip: notBuilt }, () => inFolder((folder) => {
+    const model = join(folder, 'm.gltf'), plant = join(folder, 'plant'), list = join(plant, 'tags.csv');
+    const skids = (places) => writeFileSync(model, JSON.stringify(boxModel(Object.entries(places).flatMap(([name, x], i) =>
+        [{ name: `Skid ${name}`, children: [2 * i + 1] }, { name: 'Pump', mesh: 0, translation: [x, 0, 0] }]),
+    { scene: Object.keys(places).map((_, i) => 2 * i) })));
+    skids({ A: 0, B: 5, D: 10 });
+    good(run('plantcast', 'import', model, '-o', plant));
+    writeFileSync(join(plant, 'plant.yaml'), `plant: { name: skids }
+assets:
+  - { id: PUMP-A, model: m.glb, nodes: "Skid A/Pump" }
+  - { id: PUMP-B, model: m.glb, nodes: "Skid B/Pump" }
+groups:
+  - { id: temperature, unit: °C, min: 0, max: 100 }
+tags: tags.csv
+`);
+    writeFileSync(list, 'Tag Name;Group;Asset;Node;Place;X;Y;Z\nTE-A;temperature;PUMP-A;;;0.5;0;1\nTE-B;temperature;PUMP-B;;;5.5;0;1\n');
+    // Skid A is removed, and a new Skid C stands elsewhere: its pump is not the pump of Skid A.
+    skids({ B: 5, C: 55, D: 10 });
+    good(run('plantcast', 'import', model, '-o', plant));
+    assert.deepEqual(review(plant).filter((row) => !row.startsWith('node ')), ['asset added Skid C', 'asset removed PUMP-A',
+        'tag equipment lost TE-A']);
+    assert.match(readFileSync(list, 'utf8'), /^TE-A;temperature;;;;;;$/m);
+    assert.match(readFileSync(list, 'utf8'), /^TE-B;temperature;PUMP-B;;;5\.5;0;1$/m);
+}));
+
 test('an import revises a tag list in another folder, or behind a symlink', { skip: notBuilt }, () => inFolder((folder) => {
     const model = join(folder, 'm.gltf'), lists = join(folder, 'lists'), list = join(lists, 'tags.csv');
     const A = { name: 'A', at: [0, 0, 0] }, B = { name: 'B', at: [5, 0, 0] };

@@ -80,15 +80,29 @@ static void take_children(struct node_pairing *p, int old_parent, int new_parent
     p->new_count = children_of(p->new_outline, p->pairs->to_old, new_parent, p->news);
 }
 
-static void take_unpaired(struct node_pairing *p)
+/* Lists the unpaired nodes whose name occurs only once in their model. Paired nodes count too: a repeated name such as "Pump"
+ * identifies no node. Writes to `out`, which has room for all nodes; returns the number of nodes listed. */
+static size_t named_once(const struct model_outline *outline, const int *paired, int *out)
 {
-    p->old_count = p->new_count = 0;
-    for (size_t i = 0; i < p->old_outline->header.count; i++)
-        if (p->pairs->to_new[i] < 0 && p->old_outline->nodes[i].name[0])
-            p->olds[p->old_count++] = (int)i;
-    for (size_t i = 0; i < p->new_outline->header.count; i++)
-        if (p->pairs->to_old[i] < 0 && p->new_outline->nodes[i].name[0])
-            p->news[p->new_count++] = (int)i;
+    size_t count = 0, kept = 0;
+    for (size_t i = 0; i < outline->header.count; i++)
+        if (outline->nodes[i].name[0])
+            out[count++] = (int)i;
+    qsort_r(out, count, sizeof(*out), by_name, (void *)(uintptr_t)outline);
+    for (size_t i = 0, end; i < count; i = end) {
+        int node = out[i];
+        for (end = i + 1; end < count && !strcmp(outline->nodes[node].name, outline->nodes[out[end]].name);)
+            end++;
+        if (end == i + 1 && paired[node] < 0)
+            out[kept++] = node;
+    }
+    return kept;
+}
+
+static void take_named_once(struct node_pairing *p)
+{
+    p->old_count = named_once(p->old_outline, p->pairs->to_new, p->olds);
+    p->new_count = named_once(p->new_outline, p->pairs->to_old, p->news);
 }
 
 /* --- pairing runs of candidates (unpaired nodes that compare equal) --- */
@@ -266,7 +280,7 @@ void node_pairs_find(struct node_pairs *pairs, const struct model_outline *old_o
                               .news = mem_array(news + 1, sizeof(*p.news)) };
     pair_by_guid(&p);
     pair_down_by_name(&p);
-    take_unpaired(&p);
+    take_named_once(&p);
     pair_by_name(&p, RUN_SINGLE);
     pair_down_by_name(&p);
     pair_down_by_size(&p);
