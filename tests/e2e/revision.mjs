@@ -206,6 +206,52 @@ tags: tags.csv
     assert.match(readFileSync(list, 'utf8'), /^TE-B;temperature;PUMP-B;;;5\.5;0;1$/m);
 }));
 
+test('an asset whose pattern selects several nodes keeps them all when they are renamed', { skip: notBuilt }, () => inFolder((folder) => {
+    const pipes = (names) => names.map((name, i) => ({ name, at: [5 * i, 0, 0] })), four = ['Pipe-1', 'Pipe-2', 'Pipe-3', 'Pipe-4'];
+    const lines = four.map((name) => name.replace('Pipe', 'Line')), tags = 'Tag Name;Group;Asset;Node;Place;X;Y;Z\n' +
+        'T3;temperature;PIPES;;;10.5;0;1\n';
+    for (const [names, nodes, expected] of [
+        [lines, 'nodes: "Pipe-*"', /nodes: \["Line-1", "Line-2", "Line-3", "Line-4"\] \}/],
+        [four.with(1, 'Line-2'), 'nodes: "Pipe-*"', /nodes: \["Pipe-\*", "Line-2"\] \}/],
+        [lines, 'nodes: ["!Pipe-[34]", "Pipe-*"]', /nodes: \["!Line-3", "!Line-4", "Line-1", "Line-2", "Line-3", "Line-4"\] \}/],
+    ]) {
+        const model = join(folder, 'm.gltf'), plant = mkdtempSync(join(folder, 'plant-')), list = join(plant, 'tags.csv');
+        boxes(model, pipes(four));
+        good(run('plantcast', 'import', model, '-o', plant));
+        writeFileSync(join(plant, 'plant.yaml'), `plant: { name: pipes }
+assets:
+  - { id: PIPES, model: m.glb, ${nodes} }
+groups:
+  - { id: temperature, unit: °C, min: 0, max: 100 }
+tags: tags.csv
+`);
+        writeFileSync(list, tags);
+        boxes(model, pipes(names));
+        good(run('plantcast', 'import', model, '-o', plant));
+        assert.match(readFileSync(join(plant, 'plant.yaml'), 'utf8'), expected);
+        assert.equal(readFileSync(list, 'utf8'), tags);
+        assert.ok(!review(plant).some((row) => /^(tag|asset (added|removed|node lost))/.test(row)), review(plant).join('\n'));
+    }
+}));
+
+test('the review names equipment that an asset loses, and its sensors lose their places', { skip: notBuilt }, () => inFolder((folder) => {
+    const model = join(folder, 'm.gltf'), plant = join(folder, 'plant'), list = join(plant, 'tags.csv');
+    const nodes = [{ name: 'Skid', mesh: 0, children: [2] }, { name: 'Tank', mesh: 0, translation: [9, 0, 0] },
+        { name: 'Motor', mesh: 0, translation: [3, 0, 0] }];
+    writeFileSync(model, JSON.stringify(boxModel(nodes, { scene: [0, 1] })));
+    good(run('plantcast', 'import', model, '-o', plant));
+    writeFileSync(list, 'Tag Name;Group;Asset;Node;Place;X;Y;Z\nT-M;temperature;Skid;;;3.5;0;1\nT-S;temperature;Skid;;;0.5;0;1\n');
+    // In the new export, the motor stands in the same place, but is no longer part of the skid.
+    nodes[0] = { name: 'Skid', mesh: 0 };
+    writeFileSync(model, JSON.stringify(boxModel(nodes, { scene: [0, 1, 2] })));
+    const said = good(run('plantcast', 'import', model, '-o', plant));
+    assert.match(said.stdout, /asset +node lost +Skid +.*Motor no longer belongs to the asset/);
+    assert.match(said.stdout, /tag +place lost +T-M +on Skid: its node Motor no longer belongs to the asset/);
+    assert.ok(review(plant).includes('asset added Motor'));
+    assert.match(readFileSync(list, 'utf8'), /^T-M;temperature;Skid;;equipment;;;$/m);
+    assert.match(readFileSync(list, 'utf8'), /^T-S;temperature;Skid;;;0\.5;0;1$/m);
+}));
+
 test('an import revises a tag list in another folder, or behind a symlink', { skip: notBuilt }, () => inFolder((folder) => {
     const model = join(folder, 'm.gltf'), lists = join(folder, 'lists'), list = join(lists, 'tags.csv');
     const A = { name: 'A', at: [0, 0, 0] }, B = { name: 'B', at: [5, 0, 0] };

@@ -277,6 +277,11 @@ TEST(the_plant_file_stays_as_people_wrote_it)
                              "\n"
                              "# end\n"
                              "tags: tags.csv\n");
+    const struct asset_edit several = { .nodes = (char *[]){ "A\nB" }, .node_count = 1 };
+    assert_string_equal(test_memory(asset_edit_apply("assets:\n  - id: a\n    nodes:\n      - P* # ours\n", &several, 1, NULL, why)),
+                        "assets:\n  - id: a\n    nodes:\n      - \"A\"\n      - \"B\" # ours\n");
+    assert_string_equal(test_memory(asset_edit_apply("assets:\n  - { id: a, nodes: P* }\n", &several, 1, NULL, why)),
+                        "assets:\n  - { id: a, nodes: [\"A\", \"B\"] }\n");
     assert_null(asset_edit_apply("assets: [{ id: a }]\n", &(struct asset_edit){ .removed = true }, 1, NULL, why));
     assert_string_equal(why, "import can edit the lists `assets` and `nodes` in the plant file only if each item is on a line of its own");
     mem_free(pump[1]);

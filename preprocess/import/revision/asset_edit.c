@@ -25,6 +25,9 @@ struct editor {
     char *why;
 };
 
+static const char not_block_style[] =
+    "import can edit the lists `assets` and `nodes` in the plant file only if each item is on a line of its own";
+
 static bool fail(struct editor *editor, const char *why)
 {
     snprintf(editor->why, ASSET_EDIT_WHY_BYTES, "%s", why);
@@ -84,7 +87,7 @@ static bool remove_item(struct editor *editor, const yaml_node_t *item)
     size_t begin = line_begin(text, byte_at(editor, item->start_mark)), indent = strspn(text + begin, " "), end = line_end(text, begin),
            limit = byte_at(editor, item->end_mark);
     if (text[begin + indent] != '-')
-        return fail(editor, "import can edit the lists `assets` and `nodes` in the plant file only if each item is on a line of its own");
+        return fail(editor, not_block_style);
     for (size_t line = end; text[line]; line = line_end(text, line)) {
         size_t spaces = strspn(text + line, " ");
         char first = text[line + spaces];
@@ -104,39 +107,69 @@ static void replace_scalar(struct editor *editor, const yaml_node_t *node, const
         splice(editor, byte_at(editor, node->start_mark), byte_at(editor, node->end_mark), quoted(with));
 }
 
-static void replace_flow_list(struct editor *editor, const yaml_node_t *list, const struct asset_edit *edit)
+/* Adds each line of `lines` as a quoted string, with `separator` before each but the first string of `out`. */
+static void add_quoted_lines(struct text *out, const char *lines, const char *separator)
 {
-    struct text out = { 0 };
-    const char *separator = "";
-    text_add(&out, "[");
+    char *copy = mem_strdup(lines), *next = copy;
+    for (char *line = strsep(&next, "\n"); line; line = strsep(&next, "\n")) {
+        if (out->length > 0)
+            text_add(out, "%s", separator);
+        plant_edit_add_quoted(out, line);
+    }
+    mem_free(copy);
+}
+
+/* Replaces a list in flow style, or a single string, by a list in flow style. */
+static void replace_by_flow_list(struct editor *editor, const yaml_node_t *list, const struct asset_edit *edit)
+{
+    struct text items = { 0 };
     for (size_t i = 0; i < edit->node_count; i++)
-        if (edit->nodes[i]) {
-            text_add(&out, "%s", separator);
-            plant_edit_add_quoted(&out, edit->nodes[i]);
-            separator = ", ";
-        }
-    text_add(&out, "]");
-    splice(editor, byte_at(editor, list->start_mark), byte_at(editor, list->end_mark), out.at);
+        if (edit->nodes[i])
+            add_quoted_lines(&items, edit->nodes[i], ", ");
+    splice(editor, byte_at(editor, list->start_mark), byte_at(editor, list->end_mark), mem_printf("[%s]", items.at ? items.at : ""));
+    text_finish(&items);
+}
+
+/* Replaces the string of an item of a block-style YAML list by the first of `lines`, and adds an item for each further line. */
+static bool replace_item(struct editor *editor, const yaml_node_t *item, const char *lines)
+{
+    const char *text = editor->text;
+    size_t begin = line_begin(text, byte_at(editor, item->start_mark)), indent = strspn(text + begin, " ");
+    struct text items = { 0 };
+    if (!strchr(lines, '\n')) {
+        replace_scalar(editor, item, lines);
+        return true;
+    }
+    if (text[begin + indent] != '-')
+        return fail(editor, not_block_style);
+    char *separator = mem_printf("\n%*s- ", (int)indent, "");
+    add_quoted_lines(&items, lines, separator);
+    mem_free(separator);
+    splice(editor, byte_at(editor, item->start_mark), byte_at(editor, item->end_mark), items.at);
+    return true;
 }
 
 static bool edit_nodes(struct editor *editor, const yaml_node_t *value, const struct asset_edit *edit)
 {
     bool good = true;
     if (value->type == YAML_SCALAR_NODE && edit->node_count == 1 && edit->nodes[0]) {
-        replace_scalar(editor, value, edit->nodes[0]);
+        if (strchr(edit->nodes[0], '\n'))
+            replace_by_flow_list(editor, value, edit);
+        else
+            replace_scalar(editor, value, edit->nodes[0]);
         return true;
     }
     const yaml_node_item_t *items = value->data.sequence.items.start;
     if (value->type != YAML_SEQUENCE_NODE || value->data.sequence.items.top - items != (ptrdiff_t)edit->node_count)
         return fail(editor, "import cannot edit `nodes` of an asset in the plant file: write the nodes as a list");
     if (value->data.sequence.style == YAML_FLOW_SEQUENCE_STYLE) {
-        replace_flow_list(editor, value, edit);
+        replace_by_flow_list(editor, value, edit);
         return true;
     }
     for (size_t i = 0; i < edit->node_count && good; i++) {
         const yaml_node_t *item = yaml_document_get_node(&editor->doc, items[i]);
         if (edit->nodes[i])
-            replace_scalar(editor, item, edit->nodes[i]);
+            good = replace_item(editor, item, edit->nodes[i]);
         else
             good = remove_item(editor, item);
     }

@@ -9,7 +9,8 @@
 struct asset_edit { /* changes to one asset of the plant file; all zero: none */
     bool removed;
     char *tag; /* new tag of the asset; NULL: unchanged */
-    /* nodes[i]: new text of the asset's node pattern i, NULL: the pattern is deleted; nodes NULL: no pattern changes */
+    /* nodes[i]: patterns, one per line, that replace the asset's node pattern i, NULL: the pattern is deleted; nodes NULL: no
+     * pattern changes */
     char **nodes;
     size_t node_count;
 };

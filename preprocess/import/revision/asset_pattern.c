@@ -103,26 +103,75 @@ enum asset_pattern_change asset_patterns_follow(struct asset_patterns *patterns,
     return new_count > 0 && (still || !numbered) ? ASSET_PATTERN_SAME : ASSET_PATTERN_GONE;
 }
 
+static void mark(const struct model_header *header, uint32_t node, bool *marked)
+{
+    for (size_t i = node; i < header->nodes[node].end; i++)
+        marked[i] = true;
+}
+
+static void add_line(struct text *out, const char *sign, const char *pattern)
+{
+    text_add(out, "%s%s%s", out->length > 0 ? "\n" : "", sign, pattern);
+}
+
+/* Adds the patterns that match, in the new model, the counterparts of all nodes that `pattern` matches in the old model: the pattern
+ * itself if it still matches a node, and an exact pattern for each counterpart that it no longer matches. */
+static void follow_several(struct asset_patterns *patterns, const char *pattern, size_t old_count, const char *sign, struct text *out)
+{
+    uint32_t *olds = mem_array(old_count, sizeof(*olds));
+    bool *matched = mem_array(patterns->after->count + 1, sizeof(*matched));
+    memcpy(olds, patterns->found, old_count * sizeof(*olds));
+    size_t new_count = find(patterns, patterns->after, patterns->new_names, pattern);
+    for (size_t i = 0; i < new_count; i++)
+        mark(patterns->after, patterns->found[i], matched);
+    if (new_count > 0)
+        add_line(out, sign, pattern);
+    for (size_t i = 0; i < old_count; i++) {
+        int other = patterns->pairs->to_new[olds[i]];
+        if (other < 0 || matched[other])
+            continue;
+        char *exact = exact_pattern(patterns, (uint32_t)other);
+        add_line(out, sign, exact);
+        mark(patterns->after, (uint32_t)other, matched);
+        mem_free(exact);
+    }
+    mem_free(olds);
+    mem_free(matched);
+}
+
+/* Returns what replaces one line of an asset's patterns: one pattern per line, or NULL if none matches a node of the new model. */
+static char *follow_line(struct asset_patterns *patterns, const char *line)
+{
+    const char *sign = line[0] == '!' ? "!" : "", *pattern = line + strlen(sign);
+    struct text out = { 0 };
+    char *other = NULL;
+    size_t old_count = find(patterns, patterns->before, patterns->old_names, pattern);
+    if (old_count > 1) {
+        follow_several(patterns, pattern, old_count, sign, &out);
+        return out.at;
+    }
+    enum asset_pattern_change change = asset_patterns_follow(patterns, pattern, NULL, &other);
+    if (change != ASSET_PATTERN_GONE)
+        add_line(&out, sign, change == ASSET_PATTERN_OTHER ? other : pattern);
+    mem_free(other);
+    return out.at;
+}
+
 char *asset_patterns_update(struct asset_patterns *patterns, const char *lines, char ***nodes, size_t *node_count)
 {
     struct text out = { 0 };
     bool changed = false, taking = false, had_taking = false;
     char **list = NULL, *copy = mem_strdup(lines), *next = copy;
     size_t count = 0, room = 0;
-    for (char *text = strsep(&next, "\n"); text; text = strsep(&next, "\n")) {
-        const char *sign = text[0] == '!' ? "!" : "";
-        char *other = NULL, *now = NULL;
-        enum asset_pattern_change change = asset_patterns_follow(patterns, text + strlen(sign), NULL, &other);
-        if (change != ASSET_PATTERN_GONE)
-            now = mem_printf("%s%s", sign, change == ASSET_PATTERN_OTHER ? other : text + strlen(sign));
-        changed |= change != ASSET_PATTERN_SAME;
-        had_taking |= !*sign;
-        taking |= now && !*sign;
+    for (char *line = strsep(&next, "\n"); line; line = strsep(&next, "\n")) {
+        char *now = follow_line(patterns, line);
+        changed |= !now || strcmp(now, line) != 0;
+        had_taking |= line[0] != '!';
+        taking |= now && line[0] != '!';
         if (now)
-            text_add(&out, "%s%s", out.length > 0 ? "\n" : "", now);
+            add_line(&out, "", now);
         mem_grow(&list, &room, count + 1, sizeof(*list));
         list[count++] = now;
-        mem_free(other);
     }
     mem_free(copy);
     bool none = out.length == 0 || (had_taking && !taking);

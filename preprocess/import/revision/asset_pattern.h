@@ -24,8 +24,9 @@ enum asset_pattern_change { ASSET_PATTERN_SAME, ASSET_PATTERN_OTHER, ASSET_PATTE
 enum asset_pattern_change asset_patterns_follow(struct asset_patterns *patterns, const char *pattern, const bool *before, char **out);
 
 /* Updates an asset's node patterns to the new model. lines: one pattern per line. Returns the new patterns in the same form, or
- * NULL if none is left that matches a node. If any pattern changed, (*nodes)[i] is the new text of pattern i, or NULL if it is
- * deleted. The caller frees the result, each element of *nodes, and *nodes with mem_free. */
+ * NULL if none is left that matches a node. A pattern that matched several nodes keeps them all: exact patterns are added for
+ * those that it no longer matches. If any pattern changed, (*nodes)[i] is the text that replaces pattern i, one pattern per line,
+ * or NULL if it is deleted. The caller frees the result, each element of *nodes, and *nodes with mem_free. */
 char *asset_patterns_update(struct asset_patterns *patterns, const char *lines, char ***nodes, size_t *node_count);
 
 #endif

@@ -115,7 +115,7 @@ static void take_models(struct revising *r)
 
 static void count_rows(const struct revision *revision)
 {
-    static const char *const changes[] = { "added", "removed", "renamed", "moved", "changed", "place lost", "equipment lost" };
+    static const char *const changes[] = { "added", "removed", "renamed", "moved", "changed", "node lost", "place lost", "equipment lost" };
     for (int kind = REVISION_ASSET; kind <= REVISION_TAG; kind++) {
         bool any = false;
         for (size_t c = 0; c < sizeof(changes) / sizeof(changes[0]); c++) {

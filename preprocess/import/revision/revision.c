@@ -34,7 +34,10 @@ struct planning {
     struct asset_patterns patterns;
     /* nodes that belong to the current asset; before: by node of the old model; after: by node of the new model */
     bool *before, *after;
+    bool *lost;           /* by node of the old model: the current asset loses it, although the new model has its counterpart */
+    bool loses;           /* the current asset loses nodes */
     bool *covered;        /* by node of the new model: it belongs to an asset */
+    bool *set_free;       /* by node of the new model: an asset has lost it */
     bool *roots;          /* by node of the old model: a review row about an asset already mentions it */
     char *why;
 };
@@ -180,11 +183,19 @@ static void follow_part(struct planning *p, const struct plant_tag *tag, const s
     const struct plant_asset *asset = &p->input->plant->assets[tag->asset];
     const struct model_outline *old = &p->states.before.outline;
     struct states_motion motion = *whole;
-    double now[3];
-    if (whole->change == STATES_CHANGED) {
-        double at[3] = { 0 };
+    double at[3] = { 0 }, now[3];
+    int node = -1;
+    if (whole->change == STATES_CHANGED || p->loses) {
         in_model(asset, tag->place.position_m, at);
-        int node = model_states_nearest(&p->states, p->before, at);
+        node = model_states_nearest(&p->states, p->before, at);
+    }
+    if (node >= 0 && p->lost[node]) {
+        char *detail = mem_printf("its node %s no longer belongs to the asset", p->states.before.outline.nodes[node].name);
+        lose_place(p, tag, detail);
+        mem_free(detail);
+        return;
+    }
+    if (whole->change == STATES_CHANGED) {
         bool *one = mem_array(old->header.count, sizeof(*one));
         if (node >= 0)
             one[node] = true;
@@ -280,6 +291,25 @@ static enum taken take(struct planning *p, const struct plant_asset *asset, stru
     return any ? TAKEN : TAKEN_NOTHING;
 }
 
+/* Finds the nodes that the asset loses although the new model has them, because no pattern of the asset selects them there. */
+static void review_lost_nodes(struct planning *p, const struct plant_asset *asset)
+{
+    const struct model_outline *old = &p->states.before.outline;
+    p->loses = false;
+    for (size_t i = 0; i < old->header.count; i++) {
+        int parent = old->header.nodes[i].parent, other = p->states.pairs.to_new[i];
+        p->lost[i] = p->before[i] && other >= 0 && !p->after[other];
+        if (!p->lost[i])
+            continue;
+        p->loses = p->set_free[other] = true;
+        if (parent >= 0 && p->lost[parent])
+            continue;
+        char *path = path_of(&p->states.after.outline, (size_t)other);
+        say(p, REVISION_ASSET, "node lost", asset->id, "%s no longer belongs to the asset", path);
+        mem_free(path);
+    }
+}
+
 static void plan_asset(struct planning *p, size_t index)
 {
     const struct plant_asset *asset = &p->input->plant->assets[index];
@@ -291,6 +321,8 @@ static void plan_asset(struct planning *p, size_t index)
         if (root >= 0)
             p->roots[root] = true;
         say(p, REVISION_ASSET, "removed", asset->id, "no longer in %s", p->file);
+        memset(p->after, 0, p->states.after.outline.header.count * sizeof(*p->after));
+        review_lost_nodes(p, asset);
         follow_asset(p, index, NULL);
         return;
     }
@@ -298,6 +330,7 @@ static void plan_asset(struct planning *p, size_t index)
         p->covered[i] |= p->after[i];
     if (taken == TAKEN_NOW)
         return;
+    review_lost_nodes(p, asset);
     const struct states_motion motion = model_states_motion(&p->states, p->before, tolerance_m / asset->unit_m);
     review_asset(p, asset, edit, &motion);
     follow_asset(p, index, &motion);
@@ -337,8 +370,8 @@ static void add_assets(struct planning *p, const struct revision_model *model, c
     }
 }
 
-/* Adds an asset for new equipment: for a new node without a counterpart in the old model that belongs to no asset and has no
- * asset's node below it. */
+/* Adds an asset for new equipment: for a node that has no counterpart in the old model, or that an asset has lost, if the node
+ * belongs to no asset and has no asset's node below it. */
 static void add_new(struct planning *p, const struct revision_model *model, const struct plant_asset *like)
 {
     const struct model_outline *new = &p->states.after.outline;
@@ -348,7 +381,7 @@ static void add_new(struct planning *p, const struct revision_model *model, cons
     /* Adds new equipment as assets only if no asset of the model has a placement: that of a new asset could not be guessed. */
     if (!placed)
         for (size_t i = 0; i < new->header.count; i++) {
-            wanted[i] = p->states.pairs.to_old[i] < 0;
+            wanted[i] = p->states.pairs.to_old[i] < 0 || p->set_free[i];
             for (size_t k = i; k < new->header.nodes[i].end && wanted[i]; k++)
                 wanted[i] = !p->covered[k];
         }
@@ -372,7 +405,9 @@ static bool plan_model(struct planning *p, const struct revision_model *model)
         size_t olds = p->states.before.outline.header.count, news = p->states.after.outline.header.count;
         p->before = mem_array(olds + 1, sizeof(bool));
         p->roots = mem_array(olds + 1, sizeof(bool));
+        p->lost = mem_array(olds + 1, sizeof(bool));
         p->after = mem_array(news + 1, sizeof(bool));
+        p->set_free = mem_array(news + 1, sizeof(bool));
         p->covered = mem_array(news + 1, sizeof(bool));
         asset_patterns_init(&p->patterns, &p->states.before.outline.header, &p->states.after.outline.header, &p->states.pairs);
         for (size_t i = 0; i < plant->asset_count; i++)
@@ -383,7 +418,9 @@ static bool plan_model(struct planning *p, const struct revision_model *model)
         asset_patterns_finish(&p->patterns);
         mem_free(p->before);
         mem_free(p->roots);
+        mem_free(p->lost);
         mem_free(p->after);
+        mem_free(p->set_free);
         mem_free(p->covered);
     }
     model_states_finish(&p->states);

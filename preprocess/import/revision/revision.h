@@ -18,7 +18,8 @@ struct revision_model {
 enum revision_kind { REVISION_ASSET, REVISION_NODE, REVISION_TAG };
 struct revision_row {
     enum revision_kind kind;
-    /* kind of change (static string): "added", "removed", "renamed", "moved", "changed", "place lost", "equipment lost" */
+    /* kind of change (static string): "added", "removed", "renamed", "moved", "changed", "node lost", "place lost",
+     * "equipment lost" */
     const char *change;
     char *name, *detail;
 };
