@@ -248,7 +248,7 @@ static bool run_diff(const struct prep_options *options, struct diag *diag)
         good = diff_json(&diff, stdout);
     else if (good)
         diff_text(&diff, stdout);
-    good = good && diff.orphan_count == 0;
+    good = good && diff.orphan_count == 0 && diag->errors == 0;
     diff_finish(&diff);
     return good;
 }

@@ -53,11 +53,16 @@ static const struct diff_side_asset *find_asset(const struct diff_side *side, co
 
 /* --- one asset ------------------------------------------------------------------------------------------------------------------- */
 
-static bool half_open(struct pair_half *half, struct diff_side *side, const struct diff_side_asset *asset, char *why)
+/* Returns false with the reason in why if the asset has no shape. If this is because a file cannot be read, adds an error to
+ * diag (NULL: none). */
+static bool half_open(struct pair_half *half, struct diff_side *side, const struct diff_side_asset *asset, char *why, struct diag *diag)
 {
     half->asset = asset;
-    if (!diff_side_shape(side, asset, &half->shape, why))
+    if (!diff_side_shape(side, asset, &half->shape, why)) {
+        if (half->shape.unreadable && diag)
+            diag_error(diag, side->path, 0, 0, "asset %s: %s", asset->id, why);
         return false;
+    }
     half->tree = diff_shape_create(&half->shape);
     double from_origin[16];
     memcpy(from_origin, transform_identity, sizeof(from_origin));
@@ -163,11 +168,27 @@ static double surface_moved(const struct asset_pair *pair, const double place_m[
     return as_near ? min_of(moved_m, vec_distance(old_m, still_m)) : moved_m;
 }
 
+/* Compares a sensor's position and the surface under it. old_half: the sensor's asset in the old revision. */
+static bool compare_place(struct diff *diff, const struct asset_pair *pair, const struct pair_half *old_half,
+                          const struct diff_side_tag *before, const double place_m[3], const double surface_m[3], struct diff_sensor *found)
+{
+    double old_place_m[3], old_surface_m[3];
+    if (!old_half->tree || before->column >= old_half->shape.sensor_count || isnan(old_half->shape.places_m[before->column][0]))
+        return false;
+    found->distance_m[0] = place_sensor(old_half, before->column, old_place_m, old_surface_m);
+    found->moved_m = surface_moved(pair, place_m, old_surface_m, surface_m);
+    found->place_moved_m = vec_distance(old_place_m, place_m);
+    found->far_moved = found->moved_m > pair->tolerance_m;
+    mem_grow(&diff->sensors, &diff->sensor_room, diff->sensor_count + 1, sizeof(*diff->sensors));
+    diff->sensors[diff->sensor_count++] = *found;
+    return true;
+}
+
 static void compare_sensor(struct diff *diff, struct asset_pair *pair, const struct diff_side_tag *tag)
 {
     const struct diff_side_tag *before = diff_side_find_tag(&diff->old_side, tag->name);
     const struct diff_side_shape *shape = &pair->new_half.shape;
-    double place_m[2][3], surface_m[2][3];
+    double place_m[3], surface_m[3];
     if (tag->column >= shape->sensor_count || isnan(shape->places_m[tag->column][0])) {
         const char *why = tag->column < shape->sensor_count ? shape->whys[tag->column] : NULL;
         orphan(diff, tag->name, tag->asset,
@@ -175,16 +196,18 @@ static void compare_sensor(struct diff *diff, struct asset_pair *pair, const str
         return;
     }
     struct diff_sensor found = { .tag = tag->name, .asset = tag->asset, .limit_m = pair->limit_m, .tolerance_m = pair->tolerance_m };
-    found.distance_m[1] = place_sensor(&pair->new_half, tag->column, place_m[1], surface_m[1]);
-    bool was = before && before->is_sensor && pair->old_half.tree && strcmp(before->asset, tag->asset) == 0 &&
-               before->column < pair->old_half.shape.sensor_count && !isnan(pair->old_half.shape.places_m[before->column][0]);
-    if (was) {
-        found.distance_m[0] = place_sensor(&pair->old_half, before->column, place_m[0], surface_m[0]);
-        found.moved_m = surface_moved(pair, place_m[1], surface_m[0], surface_m[1]);
-        found.place_moved_m = vec_distance(place_m[0], place_m[1]);
-        found.far_moved = found.moved_m > pair->tolerance_m;
-        mem_grow(&diff->sensors, &diff->sensor_room, diff->sensor_count + 1, sizeof(*diff->sensors));
-        diff->sensors[diff->sensor_count++] = found;
+    found.distance_m[1] = place_sensor(&pair->new_half, tag->column, place_m, surface_m);
+    bool was = false;
+    if (before && before->is_sensor && strcmp(before->asset, tag->asset) == 0) {
+        was = compare_place(diff, pair, &pair->old_half, before, place_m, surface_m, &found);
+    } else if (before && before->is_sensor) {
+        struct pair_half other = { 0 };
+        char ignored[MODEL_WHY_BYTES];
+        found.old_asset = before->asset;
+        half_open(&other, &diff->old_side, find_asset(&diff->old_side, before->asset), ignored,
+                  find_asset(&diff->new_side, before->asset) ? NULL : diff->diag);
+        was = compare_place(diff, pair, &other, before, place_m, surface_m, &found);
+        half_close(&other);
     }
     if (found.distance_m[1] > found.limit_m && (!was || found.distance_m[0] <= found.limit_m))
         orphan(diff, tag->name, tag->asset,
@@ -253,8 +276,8 @@ static void compare_asset(struct diff *diff, const struct diff_side_asset *new_a
     struct asset_pair pair = { .found.id = new_asset->id };
     const struct diff_side_asset *old_asset = find_asset(&diff->old_side, new_asset->id);
     char why[MODEL_WHY_BYTES], old_why[MODEL_WHY_BYTES];
-    bool was = old_asset && half_open(&pair.old_half, &diff->old_side, old_asset, old_why);
-    bool is = half_open(&pair.new_half, &diff->new_side, new_asset, why);
+    bool was = old_asset && half_open(&pair.old_half, &diff->old_side, old_asset, old_why, diff->diag);
+    bool is = half_open(&pair.new_half, &diff->new_side, new_asset, why, diff->diag);
     if (!is) {
         if (was)
             find_renamed(diff, &pair, new_asset, tolerance_m, why);
@@ -272,8 +295,10 @@ static void compare_asset(struct diff *diff, const struct diff_side_asset *new_a
             compare_shapes(&pair);
         compare_sensors(diff, &pair);
     }
-    if (is || was)
+    if (was || (is && !pair.old_half.shape.unreadable)) /* without the old shape, the change is unknown */
         add_asset(diff, pair.found);
+    else
+        mem_free(pair.found.why);
     half_close(&pair.old_half);
     half_close(&pair.new_half);
 }
@@ -314,16 +339,22 @@ static void compare_tags(struct diff *diff)
             diff->tags_added[diff->added_count++] = tag->name;
         }
     }
-    for (size_t i = 0; i < before->tag_count; i++)
-        if (before->tags[i].is_sensor && !diff_side_find_tag(now, before->tags[i].name)) {
+    for (size_t i = 0; i < before->tag_count; i++) {
+        const struct diff_side_tag *was = &before->tags[i], *tag = was->is_sensor ? diff_side_find_tag(now, was->name) : NULL;
+        if (was->is_sensor && !tag) {
             mem_grow(&diff->tags_removed, &diff->removed_room, diff->removed_count + 1, sizeof(*diff->tags_removed));
-            diff->tags_removed[diff->removed_count++] = before->tags[i].name;
+            diff->tags_removed[diff->removed_count++] = was->name;
+        } else if (tag && !tag->is_sensor && !*tag->asset) {
+            orphan(diff, tag->name, was->asset, mem_printf("the tag list no longer gives an asset for this tag (before: %s)", was->asset));
+        } else if (tag && !tag->is_sensor && find_asset(now, tag->asset)) {
+            orphan(diff, tag->name, tag->asset, mem_strdup("the tag no longer belongs to a group"));
         }
+    }
 }
 
 bool diff_run(struct diff *diff, const char *old_path, const char *new_path, double tolerance_m, struct diag *diag)
 {
-    *diff = (struct diff){ 0 };
+    *diff = (struct diff){ .diag = diag };
     bool good = diff_side_open(&diff->old_side, old_path, diag);
     good = diff_side_open(&diff->new_side, new_path, diag) && good;
     if (good) {

@@ -25,6 +25,7 @@ struct diff_asset {
 
 struct diff_sensor {         /* a tag that is a sensor in both revisions */
     const char *tag, *asset; /* name of the tag, and id of its asset in the new plant */
+    const char *old_asset;   /* id of its asset in the old plant if that is another asset; NULL: the same asset */
     double moved_m;          /* distance between the surface points nearest to the sensor in the old and the new revision, metres */
     double place_moved_m;    /* movement of the position given by the tag list or the sensor's node, metres */
     double distance_m[2];    /* distance from the sensor's position to the surface in the old [0] and in the new [1] revision, metres */
@@ -39,6 +40,7 @@ struct diff_orphan {
 };
 
 struct diff {
+    struct diag *diag;
     struct diff_side old_side, new_side;
     struct diff_asset *assets;
     struct diff_sensor *sensors;
@@ -49,8 +51,8 @@ struct diff {
 };
 
 /* Reads and compares both plants into *diff. tolerance_m: shapes and positions that differ by at most this count as equal; 0:
- * 10 mm, or 1 % of the asset's diagonal if that is less. Returns false if a plant cannot be read, with the reason in diag. In
- * either case, call diff_finish(). */
+ * 10 mm, or 1 % of the asset's diagonal if that is less. Returns false if a plant cannot be read, with the reason in diag. Files
+ * of single assets that cannot be read are errors in diag too, but the function then returns true. In either case, call diff_finish(). */
 bool diff_run(struct diff *diff, const char *old_path, const char *new_path, double tolerance_m, struct diag *diag);
 /* Frees the result of diff_run(). */
 void diff_finish(struct diff *diff);

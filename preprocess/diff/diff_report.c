@@ -93,6 +93,17 @@ static void names_text(const char *what, const char *const *names, size_t count,
     fprintf(out, "\n");
 }
 
+static void other_assets_text(const struct diff *diff, FILE *out)
+{
+    bool any = false;
+    for (size_t i = 0; i < diff->sensor_count; i++)
+        if (diff->sensors[i].old_asset) {
+            fprintf(out, "%s%s: now on asset %s, before on %s\n", any ? "" : "\n", diff->sensors[i].tag, diff->sensors[i].asset,
+                    diff->sensors[i].old_asset);
+            any = true;
+        }
+}
+
 static size_t count_changes(const struct diff *diff, size_t counts[DIFF_CHANGES])
 {
     size_t sensors = 0;
@@ -108,6 +119,7 @@ void diff_text(const struct diff *diff, FILE *out)
     size_t counts[DIFF_CHANGES] = { 0 }, sensors = count_changes(diff, counts);
     assets_text(diff, out);
     sensors_text(diff, out);
+    other_assets_text(diff, out);
     names_text("Tags that are new", diff->tags_added, diff->added_count, out);
     names_text("Tags that are no longer in the tag list", diff->tags_removed, diff->removed_count, out);
     fprintf(out, "\n");
@@ -135,10 +147,10 @@ static json_t *asset_json(const struct diff_asset *asset)
 
 static json_t *sensor_json(const struct diff_sensor *sensor)
 {
-    return json_pack("{s:s,s:s,s:f,s:f,s:f,s:f,s:f,s:f,s:b}", "tag", sensor->tag, "asset", sensor->asset, "surface_moved_m",
-                     sensor->moved_m, "place_moved_m", sensor->place_moved_m, "surface_distance_old_m", sensor->distance_m[0],
-                     "surface_distance_new_m", sensor->distance_m[1], "limit_m", sensor->limit_m, "tolerance_m", sensor->tolerance_m,
-                     "moved", sensor->far_moved);
+    return json_pack("{s:s,s:s,s:s*,s:f,s:f,s:f,s:f,s:f,s:f,s:b}", "tag", sensor->tag, "asset", sensor->asset, "asset_old",
+                     sensor->old_asset, "surface_moved_m", sensor->moved_m, "place_moved_m", sensor->place_moved_m,
+                     "surface_distance_old_m", sensor->distance_m[0], "surface_distance_new_m", sensor->distance_m[1], "limit_m",
+                     sensor->limit_m, "tolerance_m", sensor->tolerance_m, "moved", sensor->far_moved);
 }
 
 static json_t *names_json(const char *const *names, size_t count)

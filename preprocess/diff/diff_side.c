@@ -106,6 +106,7 @@ static bool shape_of_plant(struct diff_side *side, const struct diff_side_asset 
     struct geometry_params params = prepare_geometry(asset->plant);
     struct plant_sensor *sensors;
     const struct gltf_model *model = parse(side, &side->models.at[asset->model], why);
+    shape->unreadable = !model;
     if (!model || !cut_shape(model, &params, shape, why))
         return false;
     shape->sensor_count = plant_sensors(side->plant, (int)(asset->plant - side->plant->assets), &sensors);
@@ -172,7 +173,9 @@ static bool take_entry(struct diff_side *side, const json_t *entry)
     struct diff_side_asset *asset = &side->assets[side->asset_count++];
     if (!id || !key || json_array_size(placement) != 16 || !json_is_array(tags))
         return false;
-    *asset = (struct diff_side_asset){ .id = id, .key = strtoull(key, NULL, 16) };
+    *asset = (struct diff_side_asset){ .id = id,
+                                       .key = strtoull(key, NULL, 16),
+                                       .missing = json_string_value(json_object_get(entry, "missing")) };
     for (size_t n = 0; n < 16; n++)
         asset->placement[n] = json_number_value(json_array_get(placement, n));
     for (size_t t = 0; t < json_array_size(tags); t++) {
@@ -213,10 +216,15 @@ static bool shape_of_folder(struct diff_side *side, const struct diff_side_asset
 {
     char file_why[200] = "is missing";
     *shape = (struct diff_side_shape){ 0 };
+    if (asset->missing) {
+        wrong(why, "%.400s", asset->missing);
+        return false;
+    }
     if (folder_open(&shape->file, side->path, asset->key, file_why) != 1) {
         char *path = folder_asset_path(side->path, asset->key);
         wrong(why, "prepared file %.250s: %s; run plantcast-prep again", path, file_why);
         mem_free(path);
+        shape->unreadable = true;
         return false;
     }
     const struct asset_view *view = &shape->file.view;

@@ -23,6 +23,7 @@ struct diff_side_asset {
     size_t model;
     /* key of the asset's prepared file; set only if a folder of prepared files is compared */
     uint64_t key;
+    const char *missing; /* why the asset has no prepared file; NULL: it has one */
 };
 
 struct diff_side {
@@ -53,7 +54,8 @@ struct diff_side_shape { /* triangles and sensor positions of an asset, relative
     double (*places_m)[3]; /* positions of the asset's sensors; NaN if a sensor's node does not exist */
     char **whys;           /* by sensor: reason why its node is missing or ambiguous; NULL: the sensor's position is known */
     size_t sensor_count;
-    bool own; /* true: this struct owns its arrays; false: they point into the mapped file */
+    bool unreadable; /* true: there is no shape because a model or a prepared file cannot be read */
+    bool own;        /* true: this struct owns its arrays; false: they point into the mapped file */
     struct folder_file file;
 };
 /* Reads an asset's triangles and sensor positions into *shape. Returns false with the reason in why if they cannot be read; otherwise call

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* plantcast-prep --diff: it reports what a new revision of the model changes, and which tags lose their position. */
 #include "tests/support/test.h"
+#include <unistd.h>
 
 #include "tests/support/boxes.h"
 #include "tests/support/cad.h"
@@ -195,6 +196,54 @@ CASE(nothing_lost_is_no_error)
        */
     root = compare(c, "$FOLDER/old.prepared $FOLDER/old.yaml", 0);
     assert_int_equal((int)prep_case_number(root, "counts.same"), 7);
+}
+
+#define ONE_ROW(asset) "T-SAME,400001,Float,plc,temperature," asset ",,0.5,0.5,1\n"
+
+/* An import leaves a tag whose equipment is gone in the tag list, without an asset. */
+CASE(a_tag_that_lost_its_asset_is_an_orphan)
+{
+    write_plant(c, "new", OLD_ASSETS, ONE_ROW(""));
+    json_t *root = compare(c, "$FOLDER/old.yaml $FOLDER/new.yaml", 1);
+    assert_orphan(root, "T-SAME", "the tag list no longer gives an asset for this tag (before: SAME)");
+    assert_int_equal(json_array_size(json_object_get(root, "orphans")), 1);
+}
+
+CASE(a_tag_on_another_asset_is_shown)
+{
+    write_plant(c, "new", OLD_ASSETS, ONE_ROW("MOVED"));
+    json_t *root = compare(c, "$FOLDER/old.yaml $FOLDER/new.yaml", 1);
+    const json_t *sensor = named(root, "sensors", "tag", "T-SAME");
+    assert_string_equal(json_string_value(json_object_get(sensor, "asset_old")), "SAME");
+    assert_float_equal(prep_case_number(sensor, "surface_moved_m"), 9.5, 1e-5);
+    assert_orphan(root, "T-SAME", "before, the sensor was on the surface");
+    prep_case_expect(c, "--diff $FOLDER/old.yaml $FOLDER/new.yaml", 1);
+    prep_case_says(&c->out, "T-SAME: now on asset MOVED, before on SAME");
+}
+
+static void truncate_first(const char *folder)
+{
+    char *manifest_path = test_printf("%s/manifest.json", folder);
+    json_t *manifest = test_json(json_load_file(manifest_path, 0, NULL));
+    assert_non_null(manifest);
+    const json_t *first = json_array_get(json_object_get(manifest, "assets"), 0);
+    assert_string_equal(json_string_value(json_object_get(first, "id")), "SAME");
+    assert_int_equal(truncate(temp_path(folder, json_string_value(json_object_get(first, "file"))), 100), 0);
+}
+
+CASE(an_unreadable_prepared_file_is_an_error_not_a_new_asset)
+{
+    prep_case_expect(c, "$FOLDER/old.yaml", 0);
+    truncate_first(temp_path(c->folder, "old.prepared"));
+    json_t *root = compare(c, "$FOLDER/old.prepared $FOLDER/old.yaml", 1);
+    assert_null(named(root, "assets", "id", "SAME"));
+    assert_int_equal((int)prep_case_number(root, "counts.added"), 0);
+    prep_case_says(&c->err, "old.prepared: error: asset SAME: prepared file ");
+    temp_write_text(c->folder, "broken.glb", "no model");
+    /* PLACED has no sensor, so its new file is read only to compare shapes */
+    write_plant(c, "new", ASSET("PLACED", "broken.glb", ""), "");
+    prep_case_expect(c, "--diff $FOLDER/old.yaml $FOLDER/new.yaml", 1);
+    prep_case_says(&c->err, "new.yaml: error: asset PLACED: ");
 }
 
 /* Coarser levels of detail have vertices that lie off the original surface. These must not be reported as a change. */
