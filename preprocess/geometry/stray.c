@@ -8,6 +8,7 @@
 
 #include "base/math/gap_split.h"
 #include "base/mem.h"
+#include "base/text/utf8.h"
 #include "plant/models/transform.h"
 #include "preprocess/geometry/geometry_impl.h"
 
@@ -84,4 +85,5 @@ void stray_text(const struct geometry *geometry, const struct gltf_model *model,
     snprintf(text + length, STRAY_TEXT_BYTES - length, " %.3g m from the rest of the asset%s at %.7g, %.7g, %.7g (node '%.80s')",
              farthest.away_m, stray > 0 ? ", the farthest" : "", farthest.at_m[0], farthest.at_m[1], farthest.at_m[2],
              name_of(model, farthest.node));
+    utf8_drop_invalid(text); /* the shortened name may end inside a character, which JSON does not allow */
 }

@@ -13,6 +13,7 @@
 
 extern "C" {
 #include "base/mem.h"
+#include "base/text/utf8.h"
 }
 
 namespace gltf

@@ -166,7 +166,9 @@ void read_material(gltf_work *w, const tinygltf::Material &from, asset_material 
 
 void leave_out(gltf_work *w, const std::string &text)
 {
-    w->model->left_out[w->model->left_out_textures++] = mem_strdup(text.c_str());
+    char *copy = mem_strdup(text.c_str());
+    utf8_drop_invalid(copy); /* a shortened name may end inside a character, which JSON does not allow */
+    w->model->left_out[w->model->left_out_textures++] = copy;
 }
 
 uv_lays lays_of(const tinygltf::Model &m, int material)

@@ -598,6 +598,16 @@ CASE(textures_lie_where_their_transform_puts_them)
                                               "mirroring, or different wrapping along u and v, outside 0..1");
     assert_int_equal(l->model.materials[0].base_color_texture, ASSET_NO_TEXTURE);
 
+    /* the report shortens the material's name to 80 bytes, but keeps no part of a character */
+    char name[31 * 3 + 1] = "";
+    for (int i = 0; i < 31; i++)
+        memcpy(name + strlen(name), "배", 4);
+    maker = seed_open(15, "textured.glb", &sheet);
+    json_object_set_new(maker_get(&maker, "samplers", 0), "wrapS", json_integer(33648));
+    json_object_set_new(maker_get(&maker, "materials", 0), "name", json_string(name));
+    assert_model_good(l, &maker);
+    assert_memory_equal(l->model.left_out[0], test_printf("material 0 '%.78s': ", name), 12 + 78 + 3);
+
     maker = seed_open(15, "textured.glb", &sheet);
     json_object_del(maker_get(&maker, "textures", 0), "source");
     assert_model_good(l, &maker);

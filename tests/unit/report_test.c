@@ -234,3 +234,28 @@ TEST(the_time_left_follows_the_work)
     assert_string_equal(text, "preparing 6 of 10 assets; all other assets are up to date\n"
                               "6 of 10 assets prepared, 0.4 a second, about 7 s left\n");
 }
+
+/* A finding shortens a node's name to 80 bytes, which may end inside a character. JSON does not allow half a character. */
+TEST_ON(struct prep_case *c, a_finding_with_a_long_korean_name_is_reported, prep_case_set_up, prep_case_tear_down)
+{
+    struct model_maker maker;
+    char name[31 * 3 + 1] = "";
+    for (int i = 0; i < 31; i++)
+        memcpy(name + strlen(name), "배", 4);
+    maker_init(&maker);
+    boxes_add(&maker, "near", (const double[3]){ 0, 0, 0 }, (const double[3]){ 1, 1, 1 });
+    boxes_add(&maker, name, (const double[3]){ 5000, 0, 0 }, (const double[3]){ 5001, 1, 1 });
+    maker_write(&maker, c->folder, "model.glb");
+    prep_case_plant(c, "plant: { name: Boxes }\n"
+                       "assets:\n"
+                       "  - { id: ALL, model: model.glb, up: z }\n"
+                       "groups:\n"
+                       "  - { id: temperature, unit: K, min: 0, max: 1 }\n"
+                       "sources:\n"
+                       "  - { id: plc, type: modbus, host: 127.0.0.1, byte_order: CDAB, address_base: 1 }\n"
+                       "tags: tags.csv\n");
+    prep_case_tags(c, "");
+    prep_case_expect(c, "$PLANT --report json", 0);
+    prep_case_says(&c->out, "12 triangles of the asset lie up to ");
+    prep_case_says(&c->out, test_printf("(node '%.78s')", name));
+}
