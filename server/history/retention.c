@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/files/database.h"
 #include "base/mem.h"
 #include "history/month.h"
 #include "history/month_file.h"
@@ -66,27 +67,40 @@ static int64_t used_bytes(struct log *log, const char *folder, int month, bool n
     return size.bytes - size.free_bytes;
 }
 
-/* Deletes the oldest points of a month, at most CUT_BYTES. Returns false if the month's file is damaged or cannot be shrunk. */
-static bool cut_month(struct log *log, const char *folder, int month, bool newest, int64_t too_many, int64_t *unsent)
+/* Deletes the oldest points of a month, at most CUT_BYTES. Returns 0, or -errno; cannot_be_cut() tells whether another attempt may
+   succeed. */
+static int cut_month(struct log *log, const char *folder, int month, bool newest, int64_t too_many, int64_t *unsent)
 {
-    struct month_file_size size;
+    struct month_file_size size = { 0 };
     int64_t first_us = INT64_MAX, last_us = INT64_MIN;
     int error;
     /* opens the file for reading first, because month_file_open() would rename a damaged one */
     struct month_file *file = month_file_read(log, folder, month, &error);
-    bool can = file && !month_file_size(file, &size) && !month_file_span(file, &first_us, &last_us) && (size.shrinks || newest);
+    if (file && !(error = month_file_size(file, &size)))
+        error = month_file_span(file, &first_us, &last_us);
     month_file_close(&file);
-    if (!can || first_us > last_us || !(file = month_file_open(log, folder, month, NULL, 0, &error)))
-        return false;
+    if (error)
+        return error;
+    if ((!size.shrinks && !newest) || first_us > last_us)
+        return -ENOTSUP;
+    if (!(file = month_file_open(log, folder, month, NULL, 0, &error)))
+        return error;
     /* the free space within the file counts as freed, because the cut returns it to the disk, together with the space of the
        deleted points */
     if (!newest)
         too_many = too_many > size.free_bytes ? too_many - size.free_bytes : 0;
     double share = (double)(too_many < CUT_BYTES ? too_many : CUT_BYTES) / (double)(size.bytes - size.free_bytes);
     int64_t until_us = first_us + (int64_t)((double)(last_us - first_us) * share), latest_us = last_us - NEWEST_US;
-    bool good = month_file_cut(file, until_us < latest_us ? until_us : latest_us, !newest, unsent) == 0;
+    error = month_file_cut(file, until_us < latest_us ? until_us : latest_us, !newest, unsent);
     month_file_close(&file);
-    return good;
+    return error;
+}
+
+/* Returns true if the error means that points can never be deleted from this file: it is damaged, is of a newer version, has no
+   points, or cannot be shrunk. Other errors may pass, such as a full disk or a lock. */
+static bool cannot_be_cut(int error)
+{
+    return error == -ENOTSUP || error == -EBADMSG || error == -DATABASE_NEWER || error == -ENOENT;
 }
 
 /* Returns the number of points in a month's outbox that are still to be sent to PostgreSQL; 1 if the outbox cannot be read, so
@@ -136,9 +150,8 @@ int64_t retention_apply(struct log *log, const char *folder, const struct retent
         if (waiting > 0 && too_many <= 0)
             continue;
         bool whole = !newest && ((old && waiting == 0) || too_many >= (double)of_month);
-        if (!whole && cut_month(log, folder, months[i], newest, (int64_t)(too_many + limits->bytes * CUT_BELOW), unsent))
-            break;
-        if (newest)
+        int error = whole ? 0 : cut_month(log, folder, months[i], newest, (int64_t)(too_many + limits->bytes * CUT_BELOW), unsent);
+        if (newest || (!whole && !cannot_be_cut(error)))
             break;
         char *why = old ? mem_printf("older than %g days", limits->days)
                         : mem_printf("history takes %.1f MB, more than the limit of %.1f MB", (double)used / 1e6, limits->bytes / 1e6);

@@ -1154,6 +1154,22 @@ CASE(a_month_that_is_over_shrinks)
     }
 }
 
+/* While another process locks November's file, its oldest points cannot be deleted. The month must not be deleted instead. */
+CASE(a_locked_month_is_not_deleted)
+{
+    int64_t december_us = month_begin_us(month_of(NOVEMBER) + 1), unsent;
+    record_a_lot(s, NOVEMBER);
+    record(s, december_us, 100);
+    int64_t bytes = size_of_month(s, NOVEMBER);
+    sqlite3 *db = open_database(temp_path(s->folder, "history-2026-11.sqlite"));
+    assert_int_equal(sqlite3_exec(db, "BEGIN IMMEDIATE", NULL, NULL, NULL), SQLITE_OK);
+    retention_apply(s->log, s->folder, &(struct retention_limits){ .bytes = (double)bytes }, december_us + 100 * S, &unsent);
+    assert_int_equal(size_of_month(s, NOVEMBER), bytes);
+    sqlite3_close(db);
+    apply_for_some_minutes(s, bytes, december_us + 100 * S);
+    assert_in_range(size_of_month(s, NOVEMBER), bytes / 2, bytes - 1);
+}
+
 /* keep_gb limits the history's size. The estimate of how many days fit is given once there is a day of history; before, it is
    infinite. */
 CASE(the_days_that_fit_are_estimated)
