@@ -520,26 +520,28 @@ static void look_around(struct historian *historian)
     mem_free(path);
 }
 
-static int apply_retention(struct historian *historian, int64_t mono_ns, int64_t utc_ns)
+static int tidy_sometimes(struct historian *historian, int64_t mono_ns)
 {
-    int error = 0;
-    if (historian->file && (mono_ns - historian->tidied_ns >= TIDY_NS || month_file_waiting(historian->file) >= TIDY_ROWS)) {
-        historian->tidied_ns = mono_ns;
-        error = month_file_tidy(historian->file);
-    }
-    if (mono_ns - historian->kept_ns >= KEEP_NS || !historian->kept_ns) {
-        const struct plant_history *history = &historian->plant->history;
-        const struct retention_limits limits = { history->keep_days, history->keep_gb * 1e9, historian->postgres != NULL };
-        int64_t unsent;
-        if (!historian->kept_ns)
-            retention_check(historian->log, historian->folder, &limits);
-        historian->kept_ns = mono_ns;
-        counter_set(historian->counters.bytes, retention_apply(historian->log, historian->folder, &limits, utc_ns / 1000, &unsent));
-        if (historian->postgres)
-            postgres_count_lost(historian->postgres, unsent);
-        look_around(historian);
-    }
-    return error;
+    if (!historian->file || (mono_ns - historian->tidied_ns < TIDY_NS && month_file_waiting(historian->file) < TIDY_ROWS))
+        return 0;
+    historian->tidied_ns = mono_ns;
+    return month_file_tidy(historian->file);
+}
+
+static void apply_retention(struct historian *historian, int64_t mono_ns, int64_t utc_ns)
+{
+    const struct plant_history *history = &historian->plant->history;
+    const struct retention_limits limits = { history->keep_days, history->keep_gb * 1e9, historian->postgres != NULL };
+    int64_t unsent;
+    if (historian->kept_ns && mono_ns - historian->kept_ns < KEEP_NS)
+        return;
+    if (!historian->kept_ns)
+        retention_check(historian->log, historian->folder, &limits);
+    historian->kept_ns = mono_ns;
+    counter_set(historian->counters.bytes, retention_apply(historian->log, historian->folder, &limits, utc_ns / 1000, &unsent));
+    if (historian->postgres)
+        postgres_count_lost(historian->postgres, unsent);
+    look_around(historian);
 }
 
 /* Closes the month's file after the rows of the spool file were written to it. The file's held rows (newest samples that are
@@ -587,7 +589,9 @@ static int write_all(struct historian *historian, int64_t mono_ns, int64_t utc_n
     if (!error)
         error = clear_ended_month(historian);
     if (!error)
-        error = apply_retention(historian, mono_ns, utc_ns);
+        error = tidy_sometimes(historian, mono_ns);
+    if (!error || error == -ENOSPC) /* deletes old months also while the disk is full, because that frees space */
+        apply_retention(historian, mono_ns, utc_ns);
     if (error == -EBADMSG && historian->file)
         month_file_set_aside(&historian->file);
     return error;

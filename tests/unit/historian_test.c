@@ -832,6 +832,46 @@ CASE(a_full_disk_has_room_for_a_spool)
     assert_int_equal(umount2(folder, MNT_DETACH), 0);
 }
 
+/* Writes the file of a month, with a point at the beginning of each of its first days. */
+static void record_days(struct historian_setup *s, const char *folder, int month, int days)
+{
+    int error;
+    struct history_point points[31];
+    struct month_file *file = month_file_open(s->log, folder, month, s->tags, TAGS, &error);
+    assert_non_null(file);
+    for (int i = 0; i < days; i++)
+        points[i] = (struct history_point){ month_begin_us(month) + i * 86400 * US_PER_S, i, QUALITY_GOOD };
+    assert_int_equal(month_file_import(file, 0, points, (size_t)days), 0);
+    month_file_close(&file);
+}
+
+/* The disk is full, and has a month older than keep_days. The historian must delete that month, and then record again. */
+CASE(a_full_disk_gets_room_from_old_months)
+{
+    char *folder = temp_path(s->folder, "history"), *old = temp_path(folder, "history-2026-01.sqlite");
+    const int june = month_of(clock_utc_ns() / 1000);
+    if (!mount_disk(folder)) {
+        print_message("# no file system can be mounted here\n");
+        skip();
+    }
+    char *month = test_memory(mem_array(4 << 20, 1));
+    assert_int_equal(atomic_file_put(old, month, 4 << 20), 0);
+    record_days(s, folder, june - 1, 31);
+    record_days(s, folder, june, 14);
+    char *filler = fill_disk(folder);
+    s->plant->history.keep_days = 30;
+    start(s);
+    int64_t utc_ns = write_all(s, 1);
+    wait_until_counted(s, "plantcast_history_good", 1);
+    assert_int_not_equal(access(old, F_OK), 0);
+    assert_int_equal(access(filler, F_OK), 0);
+    historian_stop(&s->historian);
+    struct history_series series;
+    points_of(s, 3, &series);
+    assert_true(has_point(&series, utc_ns, 4));
+    assert_int_equal(umount2(folder, MNT_DETACH), 0);
+}
+
 CASE(a_read_only_disk_loses_nothing)
 {
     char *folder = temp_path(s->folder, "history");
