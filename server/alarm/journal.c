@@ -12,6 +12,7 @@
 #include "base/files/database.h"
 #include "base/mem.h"
 #include "base/thread.h"
+#include "history/retention.h"
 
 enum { WAITING_MAX = 200000, RETRY_MAX_S = 30 };
 static const int64_t GATHER_NS = NS_PER_S / 4, FORGET_NS = 600 * NS_PER_S;
@@ -35,6 +36,7 @@ struct journal {
     struct entries taken;
     bool failing;
     int64_t retry_ns, retry_after_ns, forgot_ns;
+    struct retention_clock retention_clock;
     struct thread thread;
     /* --- below: protected by thread.lock */
     struct entries waiting;
@@ -62,7 +64,9 @@ static int write_taken(struct journal *journal, int64_t mono_ns)
         journal->taken.count = 0;
     }
     if (!error && (!journal->forgot_ns || mono_ns - journal->forgot_ns >= FORGET_NS)) {
-        error = journal_file_forget(journal->file, clock_utc_ns() / 1000 - (int64_t)(journal->keep_days * (double)US_PER_DAY));
+        const int64_t utc_ns = clock_utc_ns();
+        if (retention_by_age(&journal->retention_clock, journal->log, journal->folder, mono_ns, utc_ns))
+            error = journal_file_forget(journal->file, utc_ns / 1000 - (int64_t)(journal->keep_days * (double)US_PER_DAY));
         journal->forgot_ns = error ? 0 : mono_ns;
     }
     if (error) /* closes the file after an error, so that reopening it before the next write detects damage */

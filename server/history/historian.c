@@ -85,6 +85,8 @@ struct historian {
     int64_t fill_us;     /* if `fills` is true: UTC time from which on this machine lacks points, which must be read from PostgreSQL */
     int64_t mirrored_us; /* UTC time in microseconds of the newest sample received from the leading daemon; 0: none */
     int64_t retry_ns, retry_after_ns, tidied_ns, kept_ns, utc_ahead_ns;
+    struct retention_clock retention_clock;
+    bool keeps_old; /* true: months older than keep_days are kept after a jump of the clock */
     struct thread thread;
     /* --- below: under thread.lock */
     struct historian_queue queue;
@@ -528,16 +530,29 @@ static int tidy_sometimes(struct historian *historian, int64_t mono_ns)
     return month_file_tidy(historian->file);
 }
 
+/* Returns true if no month must be deleted for its age, because the clock may have been set far forward. Logs the first such result. */
+static bool keeps_old(struct historian *historian, int64_t mono_ns, int64_t utc_ns)
+{
+    bool kept_old = historian->keeps_old;
+    historian->keeps_old = !retention_by_age(&historian->retention_clock, historian->log, historian->folder, mono_ns, utc_ns);
+    if (historian->keeps_old && !kept_old && historian->plant->history.keep_days > 0)
+        log_warn(historian->log, "history: nothing older than keep_days is deleted for a week, because the clock of this machine was set"
+                                 " forward, or nothing was recorded for more than a week; check the clock");
+    return historian->keeps_old;
+}
+
 static void apply_retention(struct historian *historian, int64_t mono_ns, int64_t utc_ns)
 {
     const struct plant_history *history = &historian->plant->history;
-    const struct retention_limits limits = { history->keep_days, history->keep_gb * 1e9, historian->postgres != NULL };
+    struct retention_limits limits = { history->keep_days, history->keep_gb * 1e9, historian->postgres != NULL };
     int64_t unsent;
     if (historian->kept_ns && mono_ns - historian->kept_ns < KEEP_NS)
         return;
     if (!historian->kept_ns)
         retention_check(historian->log, historian->folder, &limits);
     historian->kept_ns = mono_ns;
+    if (keeps_old(historian, mono_ns, utc_ns))
+        limits.days = 0;
     counter_set(historian->counters.bytes, retention_apply(historian->log, historian->folder, &limits, utc_ns / 1000, &unsent));
     if (historian->postgres)
         postgres_count_lost(historian->postgres, unsent);

@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/clock.h"
 #include "base/files/database.h"
 #include "base/mem.h"
 #include "history/month.h"
@@ -19,6 +20,8 @@ static const char *const parts[] = { "", "-wal", "-shm" };
 /* CUT_BYTES: maximum number of bytes deleted from a month in one call, because the recording thread has to wait */
 enum { PARTS = sizeof(parts) / sizeof(parts[0]), CUT_BYTES = 16000000 };
 static const int64_t NEWEST_US = 600 * US_PER_S; /* the size limit never deletes the last ten minutes of history */
+/* The limit on age is not applied for WEEK_NS after a jump of the clock by more than WEEK_NS. */
+static const int64_t WEEK_NS = 7 * 86400 * NS_PER_S;
 /* fraction of the size limit that is freed in addition when the limit is exceeded, so that it is not soon exceeded again */
 #define CUT_BELOW 0.01
 
@@ -123,6 +126,53 @@ static int64_t all_used(struct log *log, const char *folder, const int *months, 
     for (size_t i = 0; i < count; i++)
         bytes += used_bytes(log, folder, months[i], i + 1 == count);
     return bytes;
+}
+
+/* Finds the times of a month's first and last point; the whole month if its file cannot be read. Returns false if the month has no
+   points. */
+static bool span_of(struct log *log, const char *folder, int month, int64_t *first_us, int64_t *last_us)
+{
+    int error;
+    *first_us = INT64_MAX;
+    *last_us = INT64_MIN;
+    struct month_file *file = month_file_read(log, folder, month, &error);
+    if (file)
+        error = month_file_span(file, first_us, last_us);
+    month_file_close(&file);
+    if (error) {
+        *first_us = month_begin_us(month);
+        *last_us = month_begin_us(month + 1);
+    }
+    return *first_us <= *last_us;
+}
+
+/* Returns true if the history has a pause of more than a week before the present, or between its newest two months. Skips months of
+   the future: they are left from a clock that was set back. */
+static bool has_pause(struct log *log, const char *folder, int64_t now_us)
+{
+    size_t count;
+    int *months = month_list(folder, &count), seen = 0;
+    int64_t since_us = now_us, first_us, last_us;
+    bool pause = false;
+    for (size_t i = count; i > 0 && seen < 2 && !pause; i--) {
+        if (!span_of(log, folder, months[i - 1], &first_us, &last_us) || first_us > now_us)
+            continue;
+        pause = since_us - last_us > WEEK_NS / 1000;
+        since_us = first_us;
+        seen++;
+    }
+    mem_free(months);
+    return pause;
+}
+
+bool retention_by_age(struct retention_clock *clock, struct log *log, const char *folder, int64_t mono_ns, int64_t utc_ns)
+{
+    const int64_t ahead_ns = utc_ns - mono_ns;
+    if (clock->looked ? ahead_ns - clock->ahead_ns > WEEK_NS : has_pause(log, folder, utc_ns / 1000))
+        clock->resumes_ns = mono_ns + WEEK_NS;
+    clock->looked = true;
+    clock->ahead_ns = ahead_ns;
+    return mono_ns >= clock->resumes_ns;
 }
 
 /* Deletes the files of a whole month, and adds its number of unsent points (`waiting`) to *unsent. Returns false if its file

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Retention of history: deletes whole months that are too old or exceed the size limit, or only the oldest points of a month.
-   The last ten minutes are never deleted. Call only in the recording thread. */
+   The last ten minutes are never deleted. Call only in the recording thread, unless stated otherwise. */
 #ifndef HISTORY_RETENTION_H
 #define HISTORY_RETENTION_H
 #include <stdbool.h>
@@ -17,6 +17,16 @@ struct retention_limits {
    Returns the remaining size on disk in bytes. *unsent receives the number of points deleted before they were sent to
    PostgreSQL (logged). */
 int64_t retention_apply(struct log *log, const char *folder, const struct retention_limits *limits, int64_t now_us, int64_t *unsent);
+struct retention_clock { /* detects a clock that was set far forward; zero-initialise */
+    bool looked;         /* retention_by_age() was called */
+    int64_t ahead_ns;    /* UTC minus monotonic time at the last call */
+    int64_t resumes_ns;  /* monotonic time from which on the limits on age are applied */
+};
+/* Returns true if history and rows of the alarm journal may be deleted for their age. Returns false for a week of monotonic time after
+   the clock was set forward by more than a week since the last call. The same after the first call, if the history has a pause of
+   more than a week before utc_ns or between its newest two months: the clock may have been set while the daemon did not run. Call
+   it before each deletion, from any thread. */
+bool retention_by_age(struct retention_clock *clock, struct log *log, const char *folder, int64_t mono_ns, int64_t utc_ns);
 /* Returns the number of days of history that fit the size limit, judged by the newest month with at least a day of history;
    INFINITY: unknown. Logs a warning if limits->days is more. Call it at the start. */
 double retention_check(struct log *log, const char *folder, const struct retention_limits *limits);

@@ -311,6 +311,44 @@ CASE(a_new_journal_keeps_the_error_of_the_old_one_until_it_writes)
     assert_int_not_equal(error_while_blocked(s, test_printf("%s/" JOURNAL_FILE "-wal", s->folder), -ENOSPC), 0);
 }
 
+/* Adds a row to the journal of a folder, by a journal that deletes rows older than 30 days. */
+static void add_row(struct alarm_service_setup *s, const char *folder, int64_t utc_ns)
+{
+    const struct alarms_listener listener = { 0 };
+    const struct journal_params params = { .log = s->log, .counters = test_counters(), .folder = folder, .keep_days = 30 };
+    struct journal_entry entry = { .alarm = { .kind = ALARM_H, .limit = NAN, .value = NAN }, .changed = true, .utc_ns = utc_ns };
+    struct alarms *alarms = alarms_create(s->plant, &listener);
+    struct journal *journal = journal_start(&params, alarms, (struct instant){ clock_mono_ns(), clock_utc_ns() });
+    strcpy(entry.tag, "T-0000");
+    journal_add_entry(journal, &entry);
+    assert_true(journal_stop(&journal));
+    alarms_destroy(&alarms);
+}
+
+/* Records a point of the first tag in the history of a folder. */
+static void record_point(struct alarm_service_setup *s, const char *folder, int64_t t_us)
+{
+    int error;
+    struct history_tag *tags = test_memory(history_tags(s->plant));
+    struct month_file *file = month_file_open(s->log, folder, month_of(t_us), tags, s->plant->tag_count, &error);
+    assert_int_equal(month_file_import(file, 0, &(struct history_point){ t_us, 1, QUALITY_GOOD }, 1), 0);
+    month_file_close(&file);
+}
+
+/* The history has a pause of a year before the present, which may be due to a wrong clock. Old rows of the journal must stay. */
+CASE(a_jump_of_the_clock_deletes_no_rows)
+{
+    const int64_t now_us = clock_utc_ns() / 1000, old_us = now_us - 365 * 86400 * US_PER_S;
+    record_point(s, s->folder, old_us);
+    add_row(s, s->folder, old_us * 1000);
+    add_row(s, s->folder, now_us * 1000);
+    assert_int_equal(read_rows(s, NULL, 100, INT64_MAX).count, 2);
+    for (int day = 70; day >= 0; day -= 5)
+        record_point(s, s->folder, now_us - day * 86400 * US_PER_S);
+    add_row(s, s->folder, (now_us + 1) * 1000);
+    assert_int_equal(read_rows(s, NULL, 100, INT64_MAX).count, 2);
+}
+
 static void mirror(void *arg, const struct journal_entry *row)
 {
     alarm_service_mirror_row(arg, row);

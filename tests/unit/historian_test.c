@@ -709,6 +709,29 @@ CASE(a_clock_set_forward_leaves_its_hour_empty)
     assert_int_equal(events_of(s, "clock", after_ns), 1);
 }
 
+/* The clock is set forward by two years while the daemon is stopped. No recorded month may be deleted for its age. */
+CASE(a_clock_set_far_forward_deletes_nothing)
+{
+    char *june = temp_path(s->folder, "history/history-2026-06.sqlite");
+    s->plant->history.keep_days = 30;
+    start(s);
+    write_all(s, 1);
+    wait_until_counted(s, "plantcast_history_good", 1);
+    historian_stop(&s->historian);
+    atomic_fetch_add(&clock_off_ns, INT64_C(2) * 365 * 86400 * NS_PER_S);
+    for (int i = 0; i < 2; i++) {
+        start(s);
+        int64_t utc_ns = write_all(s, bent(i));
+        wait_until_counted(s, "plantcast_history_good", 1);
+        historian_stop(&s->historian);
+        struct history_series series;
+        points_of(s, 3, &series);
+        assert_true(has_point(&series, utc_ns, bent(i) + 3));
+    }
+    assert_int_equal(access(temp_path(s->folder, "history/history-2028-06.sqlite"), F_OK), 0);
+    assert_int_equal(access(june, F_OK), 0);
+}
+
 /* The clock is set back by an hour, so this hour of clock time occurs twice. All samples of both must be recorded. */
 CASE(a_clock_set_back_loses_nothing)
 {

@@ -1057,6 +1057,25 @@ CASE(old_and_large_months_go)
     mem_free(months);
 }
 
+/* After a jump of the clock by more than a week, nothing is deleted for its age for a week of running, also if the jump was made
+   while the daemon did not run, or if the daemon starts again after it. */
+CASE(a_jump_of_the_clock_deletes_nothing_for_a_week)
+{
+    const int64_t week_us = 7 * 86400 * S, jump_us = month_begin_us(month_of(NOVEMBER) + 25), now_us = NOVEMBER + 100 * S;
+    struct retention_clock stopped = { 0 }, again = { 0 }, running = { 0 };
+    record(s, NOVEMBER, 100);
+    assert_true(retention_by_age(&running, s->log, s->folder, 0, now_us * 1000));
+    assert_true(retention_by_age(&running, s->log, s->folder, week_us * 1000, (now_us + 2 * week_us - S) * 1000)); /* a small step */
+    assert_false(retention_by_age(&running, s->log, s->folder, week_us * 1000, jump_us * 1000));
+    assert_false(retention_by_age(&running, s->log, s->folder, (2 * week_us - S) * 1000, (jump_us + week_us - S) * 1000));
+    assert_true(retention_by_age(&running, s->log, s->folder, 2 * week_us * 1000, (jump_us + week_us) * 1000));
+    assert_false(retention_by_age(&stopped, s->log, s->folder, 0, jump_us * 1000)); /* before the first point after the jump */
+    record(s, jump_us, 100);
+    assert_false(retention_by_age(&again, s->log, s->folder, 0, (jump_us + 100 * S) * 1000));
+    assert_true(retention_by_age(&(struct retention_clock){ 0 }, s->log, s->folder, 0, now_us * 1000)); /* the clock was set back */
+    assert_true(retention_by_age(&again, s->log, s->folder, week_us * 1000, (jump_us + 100 * S + week_us) * 1000));
+}
+
 /* --- deleting the beginning of a month that alone is too large ----------------------------------------------------------------- */
 
 enum { LOT = 60000 };
