@@ -172,6 +172,30 @@ test('an element whose shape cannot be built is reported with its class and the 
     assert.match(stdout, /lost: #904 LINE-1002 \(IfcPipeSegment, 0\$PlantcastKinds000000A\): its representation is empty/);
 }));
 
+test('a part without a valid placement is built by Open CASCADE, or reported', { skip }, () => inFolder((folder) => {
+    const profile = ['profile', 'IFCRECTANGLEPROFILEDEF(.AREA.,$,$,200.,100.)'];
+    const solid = (name, place) => [name, `IFCEXTRUDEDAREASOLID(#{profile},#{${place}},#{z},300.)`];
+    // the part `other` of the element K-1 is placed at infinity, or by an axis without a length
+    const infinite = [profile, ['far', 'IFCCARTESIANPOINT((1.E400,0.,0.))'], ['at', 'IFCAXIS2PLACEMENT3D(#{far},$,$)'],
+        solid('other', 'at'), solid('item', 'frame')];
+    const mapped = [profile, solid('inner', 'frame'), ['model', "IFCSHAPEREPRESENTATION(#{context},'Body','SweptSolid',(#{inner}))"],
+        ['source', 'IFCREPRESENTATIONMAP(#{frame},#{model})'], ['zero', 'IFCDIRECTION((0.,0.,0.))'],
+        ['by', 'IFCCARTESIANTRANSFORMATIONOPERATOR3D(#{zero},$,#{o},1.,$)'], ['other', 'IFCMAPPEDITEM(#{source},#{by})'],
+        solid('item', 'frame')];
+    for (const [name, lines] of Object.entries({ infinite, mapped })) {
+        const bytes = ifcOf('IFC4', lines).replace(/\(#(\d+)\)(?=\);\n#\d+=IFCPRODUCTDEFINITIONSHAPE)/,
+            (_, item) => `(#${item},#${item - 1})`);
+        writeFileSync(join(folder, `${name}.ifc`), bytes);
+        const { status, stdout, stderr } = plantcast(['import', join(folder, `${name}.ifc`), '-o', join(folder, name)]);
+        assert.equal(status, 0, stderr);
+        const { volume } = volumeOf(join(folder, `${name}/${name}.glb`), 'K-1');
+        const reported = /error: parts of #\d+ K-1 \(IfcBuildingElementProxy, 0\$PlantcastKinds0000004\) are not shown/.test(stdout);
+        const built = Math.abs(volume / 0.012 - 1) < 0.01;
+        assert.ok(built !== reported && (built || Math.abs(volume / 0.006 - 1) < 0.01), `${name}: ${volume} m3\n${stdout}`);
+        assert.ok(built === (name === 'mapped') || !hasOcct, stdout);
+    }
+}));
+
 // Grid axis A is a straight line, used in reverse; axis 1 is an arc around the origin, or the curve `second`. The grid is
 // placed 10 m from the origin.
 test('an element placed at an intersection of grid axes is imported in place, or reported',

@@ -63,7 +63,8 @@ export class GlbWriter {
     }
 
     // Transforms triangles by the matrix `place` and adds them to the file as a glTF primitive. vertices: six numbers per
-    // vertex, position and normal. corners: vertex indices. Returns null if no triangle remains.
+    // vertex, position and normal. corners: vertex indices. Returns { primitive, dropped }: primitive is null if no triangle
+    // remains; dropped: number of triangles left out because a corner is not finite.
     addPrimitive({ vertices, corners }, place, color) {
         const count = Math.floor(vertices.length / 6), positions = new Float32Array(count * 3), normals = new Float32Array(count * 3);
         const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity], good = new Uint8Array(count);
@@ -89,11 +90,12 @@ export class GlbWriter {
             if (three.every((corner) => corner < count && good[corner]))
                 kept.push(...three);
         }
+        const dropped = Math.floor(corners.length / 3) - kept.length / 3;
         if (kept.length === 0)
-            return null;
-        return { attributes: { POSITION: this.#add(positions, FLOAT, 'VEC3', VERTICES, { min: low, max: high }),
+            return { primitive: null, dropped };
+        return { dropped, primitive: { attributes: { POSITION: this.#add(positions, FLOAT, 'VEC3', VERTICES, { min: low, max: high }),
             NORMAL: this.#add(normals, FLOAT, 'VEC3', VERTICES) }, indices: this.#add(new Uint32Array(kept), UINT, 'SCALAR', INDICES),
-        mode: TRIANGLES, material: this.#material(color) };
+        mode: TRIANGLES, material: this.#material(color) } };
     }
 
     addMesh(name, primitives) {

@@ -7,7 +7,7 @@ import { existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { basename, dirname, extname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { GlbWriter, relativeTo } from './glb_writer.mjs';
-import { collectErrors, findDamaged, findLosses, misplacedLines } from './ifc_losses.mjs';
+import { collectErrors, findDamaged, findLosses, misplacedLines, partlyLostLines } from './ifc_losses.mjs';
 import { openingLines, uncutOpenings } from './ifc_openings.mjs';
 import { readSolids, takeSolids, withPlacements } from './ifc_solids.mjs';
 
@@ -114,24 +114,26 @@ class Model {
 }
 
 // Returns one mesh for an IFC element, in the frame of the first of its geometries (parts). Elements with equal parts at equal relative
-// positions share a mesh.
+// positions share a mesh. dropped: number of the parts' triangles that are left out.
 function meshOf(glb, geometries, parts, name) {
     const frame = parts[0].flatTransformation;
     const placed = parts.map((part) => ({ ...part, place: relativeTo(frame, part.flatTransformation) }));
     const key = JSON.stringify(placed.map(({ geometryExpressID, color: { x, y, z, w }, place }) =>
         [geometryExpressID, x, y, z, w, place.map((v) => Math.round(v * 1e6) / 1e6)]));
     if (!geometries.made.has(key)) {
-        const primitives = placed.map(({ geometryExpressID, color: { x, y, z, w }, place }) =>
-            glb.addPrimitive(geometries.of(geometryExpressID), place, [x, y, z, w])).filter(Boolean);
-        geometries.made.set(key, primitives.length > 0 ? glb.addMesh(name, primitives) : -1);
+        const added = placed.map(({ geometryExpressID, color: { x, y, z, w }, place }) =>
+            glb.addPrimitive(geometries.of(geometryExpressID), place, [x, y, z, w]));
+        const primitives = added.map(({ primitive }) => primitive).filter(Boolean);
+        geometries.made.set(key, { mesh: primitives.length > 0 ? glb.addMesh(name, primitives) : -1,
+            dropped: added.reduce((sum, { dropped }) => sum + dropped, 0) });
     }
-    return { mesh: geometries.made.get(key), matrix: frame };
+    return { ...geometries.made.get(key), matrix: frame };
 }
 
 // Reads the triangles of all IFC elements from web-ifc. Copies each mesh while web-ifc streams it, because web-ifc frees it
-// afterwards.
+// afterwards. unplaced: by element id, the ids of its parts whose placement web-ifc could not compute.
 function readGeometry(api, id, model) {
-    const shown = new Map(), known = new Map(), cutters = new Map();
+    const shown = new Map(), known = new Map(), cutters = new Map(), unplaced = new Map();
     const copy = (geometryId) => {
         const geometry = api.GetGeometry(id, geometryId);
         const vertices = api.GetVertexArray(geometry.GetVertexData(), geometry.GetVertexDataSize()).slice();
@@ -143,8 +145,10 @@ function readGeometry(api, id, model) {
         const parts = [];
         for (let i = 0; i < mesh.geometries.size(); i++) {
             const { color, geometryExpressID, flatTransformation } = mesh.geometries.get(i), place = Array.from(flatTransformation);
-            if (!place.every(Number.isFinite))
+            if (!place.every(Number.isFinite)) {
+                unplaced.set(mesh.expressID, [...unplaced.get(mesh.expressID) ?? [], geometryExpressID]);
                 continue;
+            }
             if (!known.has(geometryExpressID))
                 known.set(geometryExpressID, copy(geometryExpressID));
             parts.push({ color: { ...color }, geometryExpressID, flatTransformation: place });
@@ -159,12 +163,12 @@ function readGeometry(api, id, model) {
     if (openings.length > 0)
         // stream the openings separately, because StreamAllMeshes() leaves them out
         api.StreamMeshes(id, [...new Set(openings)], take(cutters));
-    return { shown, known, cutters, geometries: { of: (geometryId) => known.get(geometryId), made: new Map() } };
+    return { shown, known, cutters, unplaced, geometries: { of: (geometryId) => known.get(geometryId), made: new Map() } };
 }
 
 function addTree(glb, model, { shown, geometries }, root) {
     const seen = new Set();
-    const drawn = new Set();
+    const drawn = new Set(), holed = new Map(); // holed: by element id, the number of its triangles that are left out
     let storeys = 0;
     const add = (id, parent, storey, depth) => {
         if (depth > MAX_DEPTH)
@@ -178,7 +182,9 @@ function addTree(glb, model, { shown, geometries }, root) {
         const within = kind === 'IfcBuildingStorey' ? name : storey;
         const node = glb.addNode(parent, name, model.propertiesOf(id, within));
         if (parts) {
-            const { mesh, matrix } = meshOf(glb, geometries, parts, name);
+            const { mesh, matrix, dropped } = meshOf(glb, geometries, parts, name);
+            if (mesh >= 0 && dropped > 0)
+                holed.set(id, dropped);
             if (mesh >= 0)
                 glb.place(below.length > 0 ? glb.addNode(node, '', null) : node, mesh, matrix);
             if (mesh >= 0)
@@ -191,7 +197,7 @@ function addTree(glb, model, { shown, geometries }, root) {
         add(id, root, '', 0);
     for (const id of shown.keys())
         add(id, root, '', 0); // add the elements that are outside the spatial tree as children of the root node
-    return { drawn, storeys };
+    return { drawn, holed, storeys };
 }
 
 // Converts the file's text to UTF-8. Standard IFC is ASCII with escapes, but many programs write names in their system's encoding.
@@ -243,13 +249,14 @@ async function main([input, output, , , , encoding]) {
     const wrong = new Set(solids.elements.size > 0 ? findUncut().flatMap(({ elements }) => elements) : []);
     takeSolids(model, solids, geometry, { styledItem: webIfc.IFCSTYLEDITEM, voids: webIfc.IFCRELVOIDSELEMENT }, wrong);
     const uncut = findUncut();
-    const { drawn, storeys } = addTree(glb, model, geometry, root);
+    const { drawn, holed, storeys } = addTree(glb, model, geometry, root);
     errors.stop();
     const types = { product: webIfc.IFCPRODUCT, grid: webIfc.IFCGRIDPLACEMENT };
     const isShown = (element) => drawn.has(element) || NOT_SHOWN.has(model.classOf(element));
     const { lost, lines, ids, drawn: drawnInstead } = findLosses(model, webIfc.IFCPRODUCT, isShown, solids.failed);
-    askForSolids(join(dirname(output), 'asked.txt'), [...ids, ...findDamaged(model, webIfc.IFCPRODUCT, errors.at()),
-        ...uncut.flatMap(({ opening, elements }) => [opening, ...elements])]);
+    const partly = [...geometry.unplaced.keys()].filter((element) => drawn.has(element));
+    askForSolids(join(dirname(output), 'asked.txt'), [...ids, ...partly, ...holed.keys(),
+        ...findDamaged(model, webIfc.IFCPRODUCT, errors.at()), ...uncut.flatMap(({ opening, elements }) => [opening, ...elements])]);
     if (drawn.size > 0)
         writeFileSync(output, glb.finished());
     const openings = [...model.ofType(webIfc.IFCRELVOIDSELEMENT)].length - uncut.length;
@@ -258,7 +265,8 @@ async function main([input, output, , , , encoding]) {
     ...lines.length > 0 ? [`not shown: ${lines.length} elements that consist only of lines or points: ${
         lines.slice(0, MAX_NAMED).join(', ')}${
         lines.length > MAX_NAMED ? ', ...' : ''}`.replace(/[\t\n]/g, ' ')] : [],
-    ...lost, ...openingLines(model, uncut), ...drawnInstead,
+    ...lost, ...partlyLostLines(model, partly.map((element) => [element, geometry.unplaced.get(element).length]), holed),
+    ...openingLines(model, uncut), ...drawnInstead,
     ...misplacedLines(model, types, isShown, solids.failed), ...errors.lines(model, solids), ''].join('\n'));
     if (drawn.size === 0)
         throw new Error(`the IFC file contains no surface${lost.length > 0 ? `: ${lost.length} elements have no triangles, such as ` +

@@ -80,7 +80,7 @@ function styles(model, type) {
 
 // Replaces web-ifc's geometry of an item by the solid that Open CASCADE built. An element with openings keeps web-ifc's
 // geometry, if any, unless Open CASCADE cut the openings and web-ifc did not (`wrong`: ids of such elements).
-export function takeSolids(model, solids, { shown, known }, { styledItem, voids }, wrong) {
+export function takeSolids(model, solids, { shown, known, unplaced }, { styledItem, voids }, wrong) {
     const colorOf = styles(model, styledItem), voided = new Set();
     model.relate(voids, 'RelatingBuildingElement', 'RelatedOpeningElement', (host) =>
         voidedElements(model, host).forEach((element) => voided.add(element)));
@@ -88,6 +88,11 @@ export function takeSolids(model, solids, { shown, known }, { styledItem, voids 
         const drawn = shown.get(element) ?? [], built = new Set(parts.map(({ item }) => item));
         if (drawn.length > 0 && voided.has(element) && !(cut && wrong.has(element)))
             continue;
+        // parts that Open CASCADE built are placed
+        const left = whole ? [] : (unplaced.get(element) ?? []).filter((item) => !built.has(item));
+        unplaced.delete(element);
+        if (left.length > 0)
+            unplaced.set(element, left);
         const others = whole ? [] : drawn.filter(({ geometryExpressID }) => !built.has(geometryExpressID));
         shown.set(element, [...others, ...parts.map(({ item, geometry, place }) => {
             const same = drawn.find(({ geometryExpressID }) => geometryExpressID === item), id = `solid ${cut ? `${element} ` : ''}${item}`;
