@@ -7,7 +7,7 @@
 #include "message/visibility.h"
 #include "plant/colormaps.h"
 
-static const double NUMBER_MAX = 1e12, RANGE_LEAST = 1e-9;
+static const double NUMBER_MAX = 1e12;
 
 /* Refuses a message's member `field` because the plant has no item with the name in its value. Always returns false. */
 static bool refuse_name(const char *field, const json_t *value, enum refusal_code code, struct message_error *error)
@@ -128,7 +128,7 @@ static bool parse_range(const json_t *o, struct params_change *out, struct messa
         message_refuse(error, "bad_field", "range", REFUSAL_RANGE);
     else if (!(fabs(out->range_min) <= NUMBER_MAX && fabs(out->range_max) <= NUMBER_MAX))
         message_refuse_with(error, "bad_field", "range", REFUSAL_BETWEEN, "low=%g\nhigh=%g", -NUMBER_MAX, NUMBER_MAX);
-    else if (!(out->range_max - out->range_min > RANGE_LEAST) || !plant_range_is_wide(out->range_min, out->range_max))
+    else if (!plant_range_is_wide(out->range_min, out->range_max))
         message_refuse(error, "bad_field", "range", REFUSAL_RANGE);
     else
         return true;

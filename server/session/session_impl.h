@@ -159,8 +159,8 @@ void session_come_to_own(struct session *session);
 
 /* --- session_plant.c -------------------------------------------------------------------------------------------------- */
 
-/* Describes what the user chose for the view as text, by names of tags and assets, for session_look_again(); leaves out what is as in a new
-   view. The caller frees the text with mem_free. */
+/* Describes a view as text, by names of tags and assets, for session_look_again(). Omits parameters that have their default value. The
+   caller frees the text with mem_free. */
 char *session_carried_text(const struct session_context *context, const struct view *view);
 /* Restores a view after a plant reload: size and camera from `before`, everything else from the text `carried`, skipping what
    the new plant lacks. */

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "plant/colormaps.h"
 #include "session/reply/reply.h"
 #include "session/session_impl.h"
 
@@ -31,34 +32,59 @@ static bool apply(struct session *session, const json_t *request)
            session_apply_params(session, &message, &session->view, &error);
 }
 
-/* Returns the parameters, as members of a `params` message, of a new view in which a client has requested `request`; NULL if the request
-   is refused. */
-static json_t *described(const struct session_context *context, const struct view *size, const json_t *request)
+/* Returns the parameters of a view, as members of a `params` message. */
+static json_t *members_of(const struct session_context *context, const struct view *view)
 {
-    json_t *o = NULL;
-    struct session *other = session_create(context, 0, 0);
-    view_default(context->services->scene, size->width_px, size->height_px, &other->view);
-    if (apply(other, request)) {
-        char *text = reply_params_text(context, &other->view, 0, false);
-        o = json_loads(text, 0, NULL);
-        make_request(o);
-        mem_free(text);
-    }
-    session_destroy(&other);
+    char *text = reply_params_text(context, view, 0, false);
+    json_t *o = json_loads(text, 0, NULL);
+    make_request(o);
+    mem_free(text);
     return o;
 }
 
-/* Returns the members that select what a view or half a split view shows. The defaults of the other members depend on them. */
-static json_t *choice_of(const json_t *o)
+/* Returns the parameters that a new view of the same group, `show`, sensor and baseline as `shown` has by default. */
+static json_t *defaults_of(const struct session_context *context, const struct view *shown)
 {
-    static const char *const keys[] = { "group", "show", "sensor", "baseline" };
-    json_t *choice = json_object();
-    for (size_t i = 0; i < sizeof(keys) / sizeof(keys[0]); i++)
-        if (json_object_get(o, keys[i]))
-            json_object_set(choice, keys[i], json_object_get(o, keys[i]));
-    return choice;
+    const struct scene *scene = context->services->scene;
+    struct view view;
+    view_default(scene, shown->width_px, shown->height_px, &view);
+    field_params_default(context->plant, shown->field.group, &view.field);
+    field_params_set_show(context->plant, &view.field, shown->field.show);
+    view.field.sensor = shown->field.sensor;
+    view.field.baseline = shown->field.baseline;
+    view_default_scale(scene, &view);
+    if (view.field.show == SHOW_DIFFERENCE)
+        view.colormap = colormap_find(context->plant, "diverging");
+    return members_of(context, &view);
 }
 
+/* Returns the parameters that the right half of a split view has by default next to the left half `o`. If these cannot be determined,
+   because the server now refuses the view's baseline, returns those of a new view. */
+static json_t *right_defaults(const struct session_context *context, const struct view *view, const json_t *o)
+{
+    static const char *const keys[] = { "group", "show", "sensor", "baseline" };
+    json_t *request = json_copy((json_t *)o), *chosen = json_object(), *all = NULL;
+    for (size_t i = 0; i < sizeof(keys) / sizeof(keys[0]); i++)
+        if (json_object_get(json_object_get(o, "split"), keys[i]))
+            json_object_set(chosen, keys[i], json_object_get(json_object_get(o, "split"), keys[i]));
+    json_object_set_new(request, "split", chosen);
+    struct session *other = session_create(context, 0, 0);
+    view_default(context->services->scene, view->width_px, view->height_px, &other->view);
+    if (apply(other, request))
+        all = members_of(context, &other->view);
+    session_destroy(&other);
+    json_decref(request);
+    json_t *defaults = json_incref(json_object_get(all, "split"));
+    json_decref(all);
+    if (json_is_object(defaults))
+        return defaults;
+    json_decref(defaults);
+    struct view right;
+    view_half(view, 1, &right);
+    return defaults_of(context, &right);
+}
+
+/* Deletes the members that equal `defaults`. */
 static void drop_equal(json_t *o, const json_t *defaults)
 {
     static const char *const keys[] = { "interpolation", "distance",      "fill",  "strength", "decay",  "power",      "radius_m",
@@ -69,31 +95,25 @@ static void drop_equal(json_t *o, const json_t *defaults)
             json_object_del(o, keys[i]);
 }
 
-/* Leaves out the members that nobody chose, because a reloaded plant may have other defaults: those that a view with the same choice has
-   by itself. */
+/* Deletes the members that equal the defaults of a view with the same group, show, sensor and baseline, because a reloaded plant may have
+   other defaults. */
 static void drop_defaults(const struct session_context *context, const struct view *view, json_t *o)
 {
-    json_t *choice = choice_of(o), *defaults = described(context, view, choice), *split = json_object_get(o, "split");
+    json_t *defaults = defaults_of(context, view), *split = json_object_get(o, "split");
     drop_equal(o, defaults);
     json_decref(defaults);
-    json_decref(choice);
     if (!json_is_object(split))
         return;
-    json_t *request = json_copy(o);
-    json_object_set_new(request, "split", choice_of(split));
-    defaults = described(context, view, request);
-    drop_equal(split, json_object_get(defaults, "split"));
+    defaults = right_defaults(context, view, o);
+    drop_equal(split, defaults);
     json_decref(defaults);
-    json_decref(request);
 }
 
-/* Describes what the user chose for the view, by names, as members of a `params` message. The extra object `start` lists the assets that
-   are not shown at first (hidden, ghosted) according to the plant file. */
+/* Describes a view by names, as members of a `params` message without defaults. The extra object `start` lists the assets that are not
+   shown at first (hidden, ghosted) according to the plant file. */
 char *session_carried_text(const struct session_context *context, const struct view *view)
 {
-    char *said = reply_params_text(context, view, 0, false);
-    json_t *o = json_loads(said, 0, NULL), *start = json_object();
-    make_request(o);
+    json_t *o = members_of(context, view), *start = json_object();
     drop_defaults(context, view, o);
     for (size_t i = 0; i < context->plant->asset_count; i++)
         if (context->plant->assets[i].start != PLANT_START_SHOWN)
@@ -102,7 +122,6 @@ char *session_carried_text(const struct session_context *context, const struct v
     char *dumped = json_dumps(o, JSON_COMPACT), *carried = mem_strdup(dumped);
     free(dumped);
     json_decref(o);
-    mem_free(said);
     return carried;
 }
 

@@ -6,6 +6,7 @@
 #include <jansson.h>
 
 #include "base/clock.h"
+#include "plant/colormaps.h"
 #include "base/mem.h"
 #include "session/reply/reply.h"
 #include "session/session_impl.h"
@@ -1224,6 +1225,22 @@ CASE(after_a_reload_the_new_plants_settings_apply)
     assert_true(left.field.reach_m == 2 && left.field.group == 0);
     assert_true(right.field.group == 1 && right.field.radius_m == 1 && right.colormap != 0);
     assert_true(right.field.reach_m == 2 && right.field.power == 4 && right.field.fill == FILL_NONE && right.range_max == 100);
+}
+
+/* A reload forgets readings saved without a name. A view that compared with them then shows values in the group's own colours. */
+CASE(a_difference_from_forgotten_readings_becomes_values)
+{
+    greet(f);
+    f->session->view.field.show = SHOW_DIFFERENCE;
+    f->session->view.field.baseline = 1;
+    f->session->view.colormap = colormap_find(small_scene()->plant, "diverging");
+    view_default_scale(small_scene(), &f->session->view);
+    assert_true(f->session->view.range_min < 0);
+    char *carried = session_carry(f->session);
+    session_take_plant(f->session, carried);
+    mem_free(carried);
+    const struct view *view = &f->session->view;
+    assert_true(view->field.show == SHOW_VALUE && view->range_min == 20 && view->range_max == 180 && view->colormap == 0);
 }
 
 CASE(a_follower_without_leader_has_its_own_view_after_a_reload)

@@ -41,7 +41,7 @@ test('a saved view shows the quantity, isolines and directions with which it was
     const { session } = greeted('engineer'), [group] = session.model.groups;
     group.isolines = [50];
     for (const show of ['blind', 'uncertainty', 'value']) {
-        session.setParams({ group: group.id, show, isolines: [], arrows: 'none' });
+        session.setParams({ group: group.id, show, isolines: null, arrows: 'none' }); // as the toolbar sets no isolines
         const text = textOf(session);
         session.setParams({ show: 'operator', isolines: [20], arrows: 'strokes' });
         const { params } = viewOf(session, text);
@@ -50,6 +50,15 @@ test('a saved view shows the quantity, isolines and directions with which it was
     const { params } = viewOf(session, `group=${group.id}`);
     assert.deepEqual([params.show, params.isolines, params.arrows], ['value', [50], 'arrows']);
     assert.deepEqual(viewOf(session, 'show=blind').params.isolines, [], 'the isolines of the group are values');
+    group.scale = 'log';
+    group.breaks = [10, 20];
+    for (const [show, scale] of [['operator', 'linear'], ['uncertainty', 'linear'], ['blind', 'log']]) {
+        const { params: other } = viewOf(session, `group=${group.id}&show=${show}`);
+        assert.deepEqual([other.scale, other.breaks], [scale, null], 'scale and breaks of the group are for values');
+    }
+    assert.deepEqual(viewOf(session, `group=${group.id}&ramp=10`).params.breaks, null, 'bands of equal width replace the group\'s');
+    session.setParams({ look: 'materials' });
+    assert.equal(newView(session, group.id).look, 'default', 'a new view shows readings');
     session.model.plant.show = 'operator';
     assert.equal(viewOf(session, 'look=flat').params.show, 'operator', 'the initial quantity of the plant');
 });

@@ -45,7 +45,7 @@ export function writeAddress({ camera, params: all = {}, tag = null, time = null
     for (const name of Object.keys(LISTS)) {
         if (params[name]?.length > 0 && differs(name))
             put(name, listText(name, params[name]));
-        else if (name === 'isolines' && params[name]?.length === 0 && own[name]?.length > 0)
+        else if (name === 'isolines' && own[name]?.length > 0 && (params[name] === null || params[name]?.length === 0))
             put(name, 'none');
     }
     for (const [name, usual] of Object.entries(FACTORS)) {

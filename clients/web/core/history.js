@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Converts responses of /api/v1/history and of the alarm journal to what charts and the time bar draw. Only ask() has side effects.
+// Converts responses of /api/v1/history and of the alarm journal to what charts and the time bar draw. Only ask() and
+// askInTime() have side effects.
 import { calls } from './alarms.js';
 import { answerText } from './refusals.js';
 import { say } from './words.js';

@@ -17,10 +17,11 @@ export const textOf = (session, tag = null) => {
 export function viewOf(session, text, id) {
     const { camera, params, tag } = readAddress(text), group = session.model.group(params.group) ?? session.group;
     const show = params.show ?? session.model.plant.show ?? 'value';
-    const plain = { ...session.ownOf(group), show, arrows: 'arrows', range: null, ramp_interval: 0,
-        breaks: group.breaks?.length ? group.breaks : null, split: null, selected: null, clip: null, sensors: null };
-    if (show !== 'value') // the group's isolines are values
-        plain.isolines = [];
+    const plain = { ...session.ownOf(group), show, arrows: 'arrows', look: 'default', range: null, ramp_interval: 0,
+        breaks: group.breaks?.length && params.ramp_interval === undefined ? group.breaks : null,
+        split: null, selected: null, clip: null, sensors: null };
+    if (show !== 'value') // isolines, breaks and scale of the group are for values
+        Object.assign(plain, { isolines: [], breaks: null, scale: show === 'blind' ? 'log' : 'linear' });
     const all = { ...plain, ...params }, isEngineer = session.role === 'engineer';
     const sent = isEngineer ? all : { ...withoutEngineers(all), ...(id ? { named: id } : {}) };
     const { width, height, pixel_ratio: ratio = 1 } = session.size;
