@@ -341,8 +341,12 @@ test('a snapshot request has the parameters of the view', () => {
     };
     assert.deepEqual(snapshotQuery(view), {
         width: 800, height: 600, group: 'g', range: '0,50', ghost: 'A,B', split: 'group=h;range=1,2', sensors: 'T-1=2:3',
-        clip: '1,0,0,-2', light: '0,0,1', hidden: '', camera: '1,2,3,0,0,0,45', up: '0,1,0',
+        clip: '1,0,0,-2', light: '0,0,1', hidden: '', isolines: 'none', camera: '1,2,3,0,0,0,45', up: '0,1,0',
     });
+    const removed = { isolines: null, reach_m: null }, split = { ...removed, breaks: null };
+    const { isolines, reach_m, breaks, split: right } = snapshotQuery({ ...view, carried: { ...removed, breaks: [], split } });
+    assert.deepEqual([isolines, reach_m, breaks, right], ['none', 'none', undefined, 'isolines=none;reach_m=none'],
+        'the sensor group\'s own isolines and reach stay removed');
     const { camera, projection, height_m, at } = snapshotQuery({ ...view, camera: { ...view.camera, height_m: 7 }, time: { atUs: 1e15 } });
     assert.deepEqual([camera, projection, height_m, at], ['1,2,3,0,0,0', 'orthographic', 7, '2001-09-09T01:46:40.000Z']);
 });

@@ -50,8 +50,12 @@ export function clipText({ planes, box }) {
 
 const LISTS = ['range', 'light', 'breaks', 'isolines'], NAMES = ['hidden', 'isolate', 'ghost'];
 const APART = ['split', 'clip', 'baseline']; // see snapshotQuery
+const REMOVABLE = ['isolines', 'reach_m']; // parameters that users can remove although the sensor group in the plant file has them
+const isNone = (value) => value === null || (Array.isArray(value) && value.length === 0);
 
 function text(name, value) {
+    if (REMOVABLE.includes(name) && isNone(value))
+        return 'none';
     if (LISTS.includes(name))
         return listText(name, value);
     if (NAMES.includes(name))
@@ -59,8 +63,8 @@ function text(name, value) {
     return name === 'sensors' ? sensorsText(value) : String(value);
 }
 
-const isSaid = ([name, value]) => !APART.includes(name) && value !== null && value !== undefined &&
-    !(Array.isArray(value) && value.length === 0 && !NAMES.includes(name));
+const isSaid = ([name, value]) => !APART.includes(name) && value !== undefined &&
+    (!isNone(value) || REMOVABLE.includes(name) || (value !== null && NAMES.includes(name)));
 
 // Returns the query of /snapshot.png for a picture of a session's view. carried: the view's parameters, as Session.carried() returns them.
 export function snapshotQuery({ carried, camera, size, time }) {
