@@ -48,11 +48,11 @@ test('a card changes its side only to cover fewer markers', () => {
 
 // A card of the point (0, 5, 1), whose requests are collected in `sent`.
 function placeAt(camera, params = {}) {
-    const sent = [], session = { welcomed: true, picture: { camera }, params, pickSeq: 0, size: { width: 800, height: 600 },
-        connection: { send: (message) => sent.push(message) } };
+    const sent = [], session = { welcomed: true, picture: { camera }, params, shown: {}, pickSeq: 0, size: { width: 800, height: 600 },
+        setParams() {}, connection: { send: (message) => sent.push(message) } };
     const picked = { asset: 'E-101', position: [0, 5, 1], value: 1 };
     const place = Object.assign(Object.create(Place.prototype), { session, picked, half: 0, asked: null, isLate: false, element: {},
-        build() {}, show() {} });
+        viewport: { pixelOf: (x, y) => [x, y] }, build() {}, show() {}, makeRoom() {} });
     return { place, sent, answer: (value, more = {}) => place.hear({ purpose: 'place', ...picked, value, ...more }) };
 }
 
@@ -95,6 +95,32 @@ test('the card of a point repeats its request if there is no answer, and if read
         assert.deepEqual([place.picked.value, after(100)], [3, 5], 'a replaced request is repeated');
         answer(5, { position: [1, 5, 1] });
         assert.equal(place.picked, null, 'the card closes when something hides its point');
+    } finally {
+        calls.restore();
+    }
+});
+
+test('the card of a point waits for slow answers, and asks for the clicked point until the answer comes', () => {
+    let now = 10000;
+    const { mock: calls } = mock.method(performance, 'now', () => now);
+    const camera = { ...LENS, eye: [0, 0, 0], target: [0, 9, 0] }, { place, sent, answer } = placeAt(camera);
+    const after = (ms) => {
+        now += ms;
+        place.ask();
+        return sent.length;
+    };
+    const repeats = () => [3001, 5990, 20, 11970, 40].map(after);
+    try {
+        place.open(70, 80);
+        place.session.picture = { camera: { ...camera, target: [9, 9, 0] } };
+        assert.deepEqual(repeats(), [2, 2, 3, 3, 4], 'waits longer after each repetition');
+        const clicks = sent.map(({ x, y, camera: { target } }) => ({ x, y, target }));
+        assert.deepEqual(clicks, Array(4).fill({ x: 70, y: 80, target: [0, 9, 0] }));
+        answer(2, { asset: 'E-102', position: [4, 5, 1] });
+        assert.deepEqual([place.picked.asset, place.picked.value], ['E-102', 2]);
+        sent.length = 0;
+        after(0);
+        assert.deepEqual([sent.length, ...repeats()], [1, 2, 2, 3, 3, 4], 'the waiting time starts again at its first value');
     } finally {
         calls.restore();
     }

@@ -190,17 +190,18 @@ test('the card repeats its request if there is no answer, or if another module\'
     const answer = (purpose, value) => hands.hear({ purpose, asset: 'E-101', position: [0, 5, 1], value });
     try {
         assert.deepEqual([after(0), after(1100), after(2000), after(1100)], [1, 1, 2, 2], 'an unanswered request is repeated');
+        assert.deepEqual([after(4800), after(200)], [2, 3], 'waits twice as long for the answer to a repeated request');
         answer('headset again', 2);
         assert.equal(hands.card.picked.value, 2);
-        assert.equal(after(0), 3);
+        assert.equal(after(1000), 4);
         answer('place', 9);
-        assert.deepEqual([hands.card.picked.value, after(1100)], [2, 4], 'a replaced request is repeated');
+        assert.deepEqual([hands.card.picked.value, after(1100)], [2, 5], 'a replaced request is repeated');
         answer('headset again', 3);
         assert.equal(hands.card.picked.value, 3);
         after(1100);
         hands.forget();
         answer('headset again', 4);
-        assert.deepEqual([hands.card, after(5000)], [null, 5], 'a new connection clears the card');
+        assert.deepEqual([hands.card, after(5000)], [null, 6], 'a new connection clears the card');
     } finally {
         calls.restore();
     }

@@ -3,14 +3,16 @@
 // that contribute to the value, and the uncertainty.
 import { numberText, unitText, valueText } from '../../core/format.js';
 import { askPick, askPoint } from '../../core/requests.js';
+import { asAsked } from '../../core/session.js';
 import { halves } from '../../core/split_view.js';
 import { say } from '../../core/words.js';
 import { placeInPicture, standBeside } from './card_position.js';
 import { byId, glyph, make } from '../common/dom.js';
 import { closeButton, fill } from '../common/widgets.js';
 
-// SAME_M: largest distance between two answers about the same point; a request without an answer is abandoned after UNANSWERED_MS
-const SAME_M = 0.05, UNANSWERED_MS = 3000;
+// SAME_M: largest distance in metres between two answers about the same point; REPEAT_MS: milliseconds after which an unanswered request
+// is repeated
+const SAME_M = 0.05, REPEAT_MS = 3000;
 
 export class Place {
     // showAsset(how, asset) hides an asset, makes it transparent or isolates it (hides all others). makeRoom() closes panels that leave no
@@ -32,9 +34,11 @@ export class Place {
 
     // Opens the card for the point at (x, y) in CSS pixels of the viewport.
     open(x, y) {
+        if (!this.session.picture)
+            return;
         this.half = this.session.shown.split && x >= this.viewport.width / 2 ? 1 : 0;
-        this.begin('new');
-        askPick(this.session, this.viewport.pixelOf(x, y), 'place');
+        this.clicked = { pixel: this.viewport.pixelOf(x, y), camera: asAsked(this.session.picture.camera) };
+        this.send('new');
     }
 
     close() {
@@ -42,17 +46,26 @@ export class Place {
         this.element.hidden = true;
     }
 
-    begin(asked) {
-        Object.assign(this, { asked, askedAt: performance.now(), isLate: false });
+    // Sends a request: 'new' for the clicked point, 'again' for the card's point. It is repeated if there is no answer within repeatMs.
+    send(asked, repeatMs = REPEAT_MS) {
+        Object.assign(this, { asked, askedAt: performance.now(), repeatMs, isLate: false });
+        if (asked === 'new')
+            askPick(this.session, this.clicked.pixel, 'place', this.clicked.camera);
+        else
+            askPoint(this.session, this.picked.position, 'place', this.half);
     }
 
-    // Requests the point's value again when readings or parameters change, even while the point is outside the picture.
+    // Requests the point's value again when readings or parameters change, even while the point is outside the picture. Repeats an
+    // unanswered request. Each repetition waits twice as long as the previous one, because the answer to an earlier request is ignored.
     ask() {
-        this.isLate = this.asked !== null && performance.now() - this.askedAt < UNANSWERED_MS;
-        if (!this.picked || this.isLate || !this.session.picture)
+        const { asked, repeatMs } = this;
+        this.isLate = asked !== null && performance.now() - this.askedAt < repeatMs;
+        if (this.isLate || !this.session.picture)
             return;
-        this.begin('again');
-        askPoint(this.session, this.picked.position, 'place', this.half);
+        if (asked !== null)
+            this.send(asked, 2 * repeatMs);
+        else if (this.picked)
+            this.send('again');
     }
 
     hear(picked) {

@@ -11,9 +11,9 @@ import { Board, cardLines, showCard, showColour, showRing, showWrist } from './b
 const REACH = Math.cos(2 * RADIANS); // cosine of an angle: a ray whose angle to a marker's direction is smaller than that hits the marker
 const LEVEL = Math.cos(35 * RADIANS); // cosine of the steepest slope of a floor on which a user can stand
 const RAY_M = 4, RAY_WIDE_M = 0.004, RING_M = 0.5;
-// AGAIN_MS: milliseconds between requests for the value that a card shows; a request without an answer is abandoned after
-// UNANSWERED_MS
-const AGAIN_MS = 1000, UNANSWERED_MS = 3000;
+// AGAIN_MS: milliseconds between requests for the value that a card shows; REPEAT_MS: milliseconds after which an unanswered request is
+// repeated
+const AGAIN_MS = 1000, REPEAT_MS = 3000;
 const WRIST_UP_M = 0.16; // height in metres of the panel at the wrist above the hand
 
 export class Hands {
@@ -110,10 +110,10 @@ export class Hands {
         headset.rig = standAt(headset.rig, [...headset.head.slice(12, 15)], along(point, this.up, headset.floorM));
     }
 
-    // Asks the server what is at a point of the plant; hear() gets the answer.
-    pick({ point }, purpose = 'headset') {
+    // Asks the server what is at a point of the plant; hear() gets the answer. repeatMs: time after which ask() repeats the request.
+    pick({ point }, purpose = 'headset', repeatMs = REPEAT_MS) {
         const { session, shown } = this.headset;
-        Object.assign(this, { asked: purpose, askedAt: performance.now() });
+        Object.assign(this, { asked: purpose, askedAt: performance.now(), repeatMs });
         askPoint(session, point, purpose, 0, asAsked(shown.camera));
     }
 
@@ -132,12 +132,13 @@ export class Hands {
             this.card = { picked, at: position };
     }
 
-    // Requests the value at the card's point again when readings change.
+    // Requests the value at the card's point again when readings change. Each repetition of an unanswered request waits twice as long as
+    // the previous one, because the answer to an earlier request is ignored.
     ask() {
-        const waitMs = this.asked ? UNANSWERED_MS : AGAIN_MS;
+        const waitMs = this.asked ? this.repeatMs : AGAIN_MS;
         if (!this.card || this.card.picked.sensor || performance.now() - this.askedAt < waitMs || !this.headset.shown)
             return;
-        this.pick({ point: this.card.at }, 'headset again');
+        this.pick({ point: this.card.at }, 'headset again', this.asked ? 2 * this.repeatMs : REPEAT_MS);
     }
 
     // Closes the card about a sensor or point: after a reconnect its values are not valid any more.
