@@ -205,6 +205,40 @@ test('a trend keeps its alarms if the journal cannot be read, and says so', asyn
     assert.equal(notes.at(-1), '');
 });
 
+test('a live trend marks alarms even if their requests take longer than the time until its next values', async () => {
+    const { trends } = trendsOf(), { tags } = trends, waiting = [];
+    let answer = journal(1000);
+    const slow = (query) => new Promise((done) => { waiting.push(() => done(answer(query))); });
+    const settle = () => new Promise((done) => { setImmediate(done); });
+    trends.element.hidden = false;
+    const asks = async (change) => {
+        Object.assign(trends, change);
+        trends.askAlarms();
+        await settle();
+        return waiting.length;
+    };
+    await withServer(slow, async () => {
+        assert.deepEqual([await asks({}), await asks({ span: [600, 1100] }), await asks({ span: [700, 1200] })], [1, 1, 1]);
+        waiting.pop()();
+        await settle();
+        assert.deepEqual([trends.alarms.get('TI-1').length, waiting.length], [250, 1], 'then asks once for the newest span');
+        waiting.pop()();
+        await settle();
+        assert.deepEqual([trends.alarms.get('TI-1').length, waiting.length], [150, 0]);
+        answer = journal(7000);
+        assert.deepEqual([await asks({}), await asks({ tags: [] })], [1, 1]);
+        waiting.pop()();
+        await settle();
+        assert.deepEqual([trends.alarms.size, waiting.length], [0, 0], 'no marks of a removed tag, and no request for its earlier alarms');
+        answer = journal(1000);
+        assert.deepEqual([await asks({ tags }), await asks({})], [1, 1]);
+        trends.element.hidden = true;
+        waiting.pop()();
+        await settle();
+        assert.equal(waiting.length, 0, 'no further requests after the trend was closed');
+    });
+});
+
 test('a trend abandons a request that the server never answers, and can then ask again', async () => {
     await learnWords();
     const { trends, notes } = trendsOf(), silent = (query, { signal }) => new Promise((done, fail) => {

@@ -62,7 +62,7 @@ export class Trends {
     // page: the page's parts (main.js)
     constructor(page) {
         const { session, overlay, handlers } = page;
-        Object.assign(this, { page, session, tags: [], plots: [], focus: null, isAsking: false });
+        Object.assign(this, { page, session, tags: [], plots: [], focus: null, isAsking: false, isAskingAlarms: false });
         Object.assign(this, { turn: 0, isSwitched: false }); // turn: index of the chart shown while isSwitched (one chart at a time)
         Object.assign(this, { spanS: newSpanS(null), fixed: null, before: [] });
         this.unread = null; // the text in the range field, if it was not understood
@@ -455,12 +455,25 @@ export class Trends {
         return [...unread, ...unshown, ...this.unmarked].join(' · ');
     }
 
-    // Requests the alarms of the tags in the time range, and earlier alarms that may last into the range. If that fails, the marks stay
-    // unchanged, and the note says so.
+    // Requests the alarms of the tags in the time range, and earlier alarms that may last into the range. As in refresh(), a further call
+    // waits until these requests have ended, and their answers are shown even if the range has changed meanwhile.
     async askAlarms() {
-        const { tags, span } = this, all = await Promise.allSettled(tags.map((tag) => this.alarmsOf(tag, span)));
-        if (tags !== this.tags || span !== this.span || !this.isOpen)
+        this.isAlarmsLate = this.isAskingAlarms;
+        if (this.isAskingAlarms)
             return;
+        this.isAskingAlarms = true;
+        const { tags, span } = this, all = await Promise.allSettled(tags.map((tag) => this.alarmsOf(tag, span)));
+        this.isAskingAlarms = false;
+        if (this.isOpen && tags === this.tags)
+            this.takeAlarms(all);
+        if (this.isOpen && this.isAlarmsLate)
+            this.askAlarms();
+    }
+
+    // Marks the alarms in the charts. all: for each tag, the settled promise of alarmsOf(). The marks of a tag whose request failed stay
+    // unchanged, and the note says so.
+    takeAlarms(all) {
+        const { tags } = this;
         this.alarms = new Map(tags.map(({ name }, i) => [name, all[i].value?.alarms ?? this.alarms.get(name)]));
         const failed = all.find(({ reason }) => reason), cut = tags.filter((_, i) => all[i].value?.isCut).map(({ name }) => name);
         const unmarked = [...failed ? [say('time.unread', { why: failed.reason.message })] : [],
@@ -473,11 +486,12 @@ export class Trends {
         this.redraw();
     }
 
-    // Returns a promise of a tag's alarms in a time range: { alarms, isCut (true: the earliest ones are missing) }.
-    async alarmsOf({ name, unit }, [from, to]) {
-        const rows = [], query = { tag: name, to: (to / 1e6).toFixed(3), limit: ALARM_ROWS };
+    // Returns a promise of a tag's alarms in a time range: { alarms, isCut (true: the earliest ones are missing) }. Stops early if the
+    // tag is removed from the charts.
+    async alarmsOf(tag, [from, to]) {
+        const { name, unit } = tag, rows = [], query = { tag: name, to: (to / 1e6).toFixed(3), limit: ALARM_ROWS };
         const isCut = () => query.before !== null && !(rows.at(-1)?.time_us <= from);
-        for (let i = 0; i < ALARM_PAGES && isCut(); i++) {
+        for (let i = 0; i < ALARM_PAGES && isCut() && this.tags.includes(tag); i++) {
             const page = await askInTime('api/v1/alarms/journal', query, this.session.token);
             rows.push(...page.rows);
             query.before = page.next_before;
