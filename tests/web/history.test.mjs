@@ -282,8 +282,8 @@ test('the time bar keeps its marks if the server does not answer, and does not t
 });
 
 test('the right half of two times gets the sensor, the factors and the baseline of the left half, if it can have them', () => {
-    const first = { group: 'temperature', show: 'value', sensor: null, sensors: {}, baseline: null, range: [0, 100], split: null,
-        strength: 1 };
+    const first = { group: 'temperature', show: 'value', sensor: null, sensors: {}, baseline: null, range: [0, 100], breaks: [50],
+        split: null, strength: 1 };
     const sent = [], other = { welcomed: true, picture: {}, params: first, setParams: (change) => sent.push(change) };
     const compare = Object.assign(Object.create(Compare.prototype), { session: { params: first, role: 'engineer' }, connected: {},
         told: null, frame: { contentWindow: { plantcast: { session: other } } } });
@@ -302,6 +302,8 @@ test('the right half of two times gets the sensor, the factors and the baseline 
     assert.equal(tells(unconfirmed), null, 'waits until the server has confirmed the baseline');
     assert.deepEqual(tells({ baseline: { name: 'noon', time_us: 1 } }), { range: [-25, 25], show: 'difference', baseline: 'noon' });
     assert.deepEqual(tells({ baseline: { name: null, time_us: 2 } }), { show: 'value', baseline: null }, 'readings without a name');
+    assert.deepEqual(tells({ show: 'value', baseline: null, range: [0, 100], breaks: null }), { range: [0, 100], breaks: null },
+        'removes the bands that the right half has kept');
     compare.session.role = 'operator';
     assert.equal(tells({ strength: 3, sensors: {} }), null, 'an operator may not send what only engineers may');
 });

@@ -141,7 +141,7 @@ export class Compare {
         if (show === 'difference' && baseline && !baseline.time_us)
             return; // the server has not confirmed yet which readings the left half is compared with
         const now = sharedOf(params, role), told = this.told ?? sharedOf(this.other.params, role);
-        const changed = Object.entries(now).filter(([name, value]) => !isSame(value, told[name] ?? null));
+        const changed = Object.entries(now).filter(([name, value]) => !isSame(value, told[name]));
         this.told = now;
         if (changed.length > 0)
             this.other.setParams(Object.fromEntries(changed.map(([name, value]) =>
