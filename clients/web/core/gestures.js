@@ -7,8 +7,8 @@ const CLICK_MS = 500;
 const SLOP_PX = { mouse: 3, pen: 5, touch: 8 };
 const LINE_PX = 16, PAGE_PX = 400;
 const WHEEL_PER_PX = 0.0016, PINCH_PER_PX = 0.01, MOST_PER_EVENT = 0.5;
-// A mouse that has moved or turned its wheel over the picture within this time is expected to move the camera next.
-const AT_HAND_MS = 5000;
+// MOVE_EXPECTED_MS: a mouse that has moved or turned its wheel over the picture within this time is expected to move the camera next
+const MOVE_EXPECTED_MS = 5000;
 
 const centre = (all) => ['x', 'y'].map((axis) => all.reduce((sum, p) => sum + p[axis], 0) / all.length);
 const apart = ([a, b]) => Math.hypot(a.x - b.x, a.y - b.y);
@@ -27,13 +27,13 @@ export class Gestures {
     }
 
     // Returns true if the user is expected to move the camera soon. now: milliseconds.
-    isAtHand(now) {
-        return this.active || now - this.mouseAt < AT_HAND_MS;
+    expectsMove(now) {
+        return this.active || now - this.mouseAt < MOVE_EXPECTED_MS;
     }
 
     // A mouse has moved or turned its wheel over the picture. Returns true if the user was not expected to move the camera before.
     mouse(now) {
-        const isNew = !this.isAtHand(now);
+        const isNew = !this.expectsMove(now);
         this.mouseAt = now;
         return isNew;
     }

@@ -5,6 +5,7 @@ import { calls } from './alarms.js';
 import { answerText } from './refusals.js';
 import { say } from './words.js';
 
+// UNANSWERED_MS: timeout of askInTime() in milliseconds
 const UNANSWERED_MS = 60000;
 export const BAD = 2, UNCERTAIN = 1; // severity of a quality: the top two bits of an OPC UA status code
 export const severityOf = (quality) => Math.min(BAD, quality >>> 30);

@@ -21,8 +21,8 @@ import { areaOf, paneOf } from './panes.js';
 import { Pairing } from './pairing.js';
 import { tileOf } from './tile.js';
 
-// LOOK_MS: after a failed request for the walls of the plant file, the page tries again this much later
-const TICK_MS = 250, LOST_MS = 3000, LOOK_MS = 5000;
+// WALLS_RETRY_MS: delay in milliseconds before a failed request for the walls is repeated
+const TICK_MS = 250, LOST_MS = 3000, WALLS_RETRY_MS = 5000;
 // LEAST: minimum size of a display in units of the page (CSS pixels before scaling); LETTERS_MM: height in millimetres of the
 // letters of the message that the connection is lost
 const LEAST = { width: 560, height: 315 }, LETTERS_MM = 100;
@@ -111,7 +111,7 @@ async function look() {
     } catch (error) {
         if (!shape)
             sayWrong(error.message);
-        looking = setTimeout(() => session.welcomed && look(), LOOK_MS);
+        looking = setTimeout(() => session.welcomed && look(), WALLS_RETRY_MS);
     }
     sayWho();
 }

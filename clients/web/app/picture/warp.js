@@ -239,7 +239,7 @@ export class Warp {
     // sooner. Returns true if the screen changes.
     rest() {
         const changes = this.hide();
-        if (this.source && this.modules.there('cameraController')?.gestures.isAtHand(performance.now()))
+        if (this.source && this.modules.there('cameraController')?.gestures.expectsMove(performance.now()))
             this.load();
         return changes;
     }
