@@ -54,12 +54,13 @@ static const char *const sql[SQL_COUNT] = {
     [SQL_COMMIT] = "COMMIT",
     [SQL_ROLLBACK] = "ROLLBACK",
     /* also finds earlier series of the tag that were set aside, because their unit cannot be converted to the unit that the tag
-       has now. They are named after the tag, followed by char(31) and a number */
+       has now. They are named after the tag, followed by char(31) and a number or a unit */
     [SQL_FIND_TAG] = "SELECT id, step, unit FROM tag WHERE name = ?1 OR (name > ?1 || char(31) AND name < ?1 || char(32)) ORDER BY name",
     [SQL_RENAME_TAG] = "UPDATE tag SET name = ?2 WHERE id = ?1",
     [SQL_TAG_UNIT] = "SELECT unit FROM tag WHERE id = ?",
     [SQL_ADD_TAG] = "INSERT INTO tag(name, unit, step, within) VALUES(?, ?, ?, ?) ON CONFLICT(name) DO UPDATE"
                     " SET unit = excluded.unit, step = excluded.step, within = excluded.within RETURNING id",
+    [SQL_SET_STEP] = "UPDATE tag SET step = ?2, within = ?3 WHERE id = ?1",
     [SQL_HOLD] = "INSERT OR REPLACE INTO held(tag, t, v, q) VALUES(?, ?, ?, ?)",
     [SQL_ADD_ROLLUP] = "INSERT OR REPLACE INTO rollup(level_s, tag, t, low, high, mean, first, last, good_us, bad_us, q)"
                        " VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",

@@ -142,25 +142,33 @@ static int fit_unit(struct month_file *file, int tag)
     return error ? error : month_blocks_edit(file, id, INT64_MIN, INT64_MAX, convert_points, &change);
 }
 
+/* Adds a series with this name and the tag's properties, or sets the properties of the series that has this name. */
+static int put_series(struct month_file *file, const struct history_tag *of, const char *name, int64_t *id)
+{
+    sqlite3_stmt *add = month_sql(file, SQL_ADD_TAG);
+    database_bind_text(add, 1, name);
+    database_bind_text(add, 2, of->unit);
+    sqlite3_bind_int(add, 3, of->step);
+    sqlite3_bind_double(add, 4, of->within);
+    int code = database_step(&file->db, add);
+    if (code == SQLITE_ROW)
+        *id = sqlite3_column_int64(add, 0);
+    int error = database_fail(&file->db, code, "cannot add a tag");
+    sqlite3_reset(add);
+    return error;
+}
+
 static int tag_id(struct month_file *file, int tag, int64_t *id)
 {
     const struct history_tag *of = &file->tags[tag];
     *id = file->ids[tag];
     if (*id)
         return 0;
-    int unit_error = fit_unit(file, tag);
-    if (unit_error)
-        return unit_error;
-    sqlite3_stmt *add = month_sql(file, SQL_ADD_TAG);
-    database_bind_text(add, 1, of->name);
-    database_bind_text(add, 2, of->unit);
-    sqlite3_bind_int(add, 3, of->step);
-    sqlite3_bind_double(add, 4, of->within);
-    int code = database_step(&file->db, add);
-    if (code == SQLITE_ROW)
-        file->ids[tag] = *id = sqlite3_column_int64(add, 0);
-    int error = database_fail(&file->db, code, "cannot add a tag");
-    sqlite3_reset(add);
+    int error = fit_unit(file, tag);
+    if (!error)
+        error = put_series(file, of, of->name, id);
+    if (!error)
+        file->ids[tag] = *id;
     return error;
 }
 
@@ -443,6 +451,10 @@ static int roll_again(struct month_file *file, int tag, int64_t id, int64_t from
     if (!error)
         error = roll_from(file, id, from_us, &rollups);
     file->rollups[tag] = rollups;
+    struct unit_change none;
+    bool step;
+    /* an import may add to a series that is not the one recorded now */
+    file->rollups[tag].loaded = month_find_tag(file, file->tags[tag].name, NULL, &step, &none) == id;
     return error;
 }
 
@@ -461,6 +473,29 @@ static int begin_change(struct month_file *file)
     return error ? end(file, error) : 0;
 }
 
+/* Finds the series to which an import adds points of a tag, and the conversion from the unit of this series to the plant's. The unit
+   of the series stays as it is, because another handle may be recording in this unit. If the units of all series of the tag cannot be
+   converted to the plant's, adds a series that readers find by its unit, and that fit_unit() later continues. */
+static int import_series(struct month_file *file, int tag, int64_t *id, struct unit_change *change)
+{
+    const struct history_tag *of = &file->tags[tag];
+    bool step;
+    *id = month_find_tag(file, of->name, of->unit, &step, change);
+    if (*id) {
+        sqlite3_stmt *set = month_sql(file, SQL_SET_STEP);
+        sqlite3_bind_int64(set, 1, *id);
+        sqlite3_bind_int(set, 2, of->step);
+        sqlite3_bind_double(set, 3, of->within);
+        return month_run(file, set, "cannot change a tag");
+    }
+    struct unit_change none;
+    bool has_other = month_find_tag(file, of->name, NULL, &step, &none) != 0;
+    char *name = has_other ? mem_printf("%s\x1f%s", of->name, of->unit) : mem_strdup(of->name);
+    int error = put_series(file, of, name, id);
+    mem_free(name);
+    return error;
+}
+
 int month_file_import(struct month_file *file, int tag, const struct history_point *points, size_t count)
 {
     int64_t id;
@@ -470,13 +505,20 @@ int month_file_import(struct month_file *file, int tag, const struct history_poi
     if (error)
         return error;
     static const struct month_chunk own = { 0 };
-    error = tag_id(file, tag, &id);
+    struct unit_change change;
+    struct history_point *stored = mem_array(count, sizeof(*stored));
+    error = import_series(file, tag, &id, &change);
+    for (size_t i = 0; i < count && !error; i++) {
+        stored[i] = points[i];
+        stored[i].value = unit_change_back(&change, points[i].value);
+        if (file->has_outbox)
+            error = put(file, SQL_ADD_OUTBOX, id, &stored[i]);
+    }
     if (!error)
-        error = month_blocks_write(file, id, &own, points, count);
-    for (size_t i = 0; i < count && !error && file->has_outbox; i++)
-        error = put(file, SQL_ADD_OUTBOX, id, &points[i]);
+        error = month_blocks_write(file, id, &own, stored, count);
     if (!error)
         error = roll_again(file, tag, id, points[0].t_us);
+    mem_free(stored);
     return end(file, error);
 }
 

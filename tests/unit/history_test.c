@@ -1424,6 +1424,64 @@ CASE(points_of_another_quantity_are_left_out)
     }
 }
 
+/* Imports a point while another handle records TT-1 in °C. This handle knows another unit of TT-1, and may be of a plant whose tag
+   list was changed after the daemon read it. */
+static void import_in_unit(struct history_setup *s, const char *unit, int64_t t_us, double value)
+{
+    int error;
+    struct history_tag tag = { "TT-1", unit, false, 0, INT64_MAX };
+    struct month_file *file = month_file_open(s->log, s->folder, month_of(t_us), &tag, 1, &error);
+    assert_non_null(file);
+    assert_int_equal(month_file_use_outbox(file), 0);
+    assert_int_equal(month_file_import(file, 0, &(struct history_point){ t_us, value, QUALITY_GOOD }, 1), 0);
+    month_file_close(&file);
+}
+
+static void assert_values(struct history_setup *s, const char *unit, const double *values, size_t count)
+{
+    struct history_series series;
+    read_in_unit(s, unit, NOVEMBER + 100 * S, 1000, &series);
+    assert_int_equal(series.points.count, count);
+    for (size_t i = 0; i < count; i++)
+        assert_float_equal(series.points.at[i].value, values[i], 1e-9);
+}
+
+CASE(an_import_keeps_the_unit_that_is_recorded)
+{
+    int error;
+    struct history_tag tag = { "TT-1", "°C", false, 0, INT64_MAX };
+    struct month_file *file = month_file_open(s->log, s->folder, month_of(NOVEMBER), &tag, 1, &error);
+    struct history_row row = { 0, { NOVEMBER + 10 * S, 20, QUALITY_GOOD } };
+    assert_non_null(file);
+    assert_int_equal(month_file_write(file, &row, 1, NULL, 0), 0);
+    import_in_unit(s, "°F", NOVEMBER, 212);
+    row.point.t_us += S;
+    assert_int_equal(month_file_write(file, &row, 1, NULL, 0), 0);
+    import_in_unit(s, "bar", NOVEMBER + S, 5);
+    import_in_unit(s, "kg", NOVEMBER + 2 * S, 7);
+    import_in_unit(s, "kPa", NOVEMBER + 3 * S, 600);
+    row.point.t_us += S;
+    assert_int_equal(month_file_write(file, &row, 1, NULL, 0), 0);
+    assert_int_equal(month_file_tidy(file), 0);
+    month_file_close(&file);
+    assert_values(s, "°C", (double[]){ 100, 20, 20, 20 }, 4);
+    assert_values(s, "bar", (double[]){ 5, 6 }, 2);
+    assert_values(s, "kg", (double[]){ 7 }, 1);
+    struct month_outbox_batch batch = { 0 };
+    struct month_outbox *outbox = month_outbox_open(s->log, s->folder, month_of(NOVEMBER), &error);
+    assert_int_equal(month_outbox_read(outbox, 100, &batch), 0);
+    assert_int_equal(batch.row_count, 4);
+    assert_float_equal(batch.rows[0].point.value, 100, 1e-9);
+    assert_float_equal(batch.rows[3].point.value, 6, 1e-9);
+    month_outbox_batch_finish(&batch);
+    month_outbox_close(&outbox);
+    /* the daemon reloads the changed tag list */
+    write_in_unit(s, "°F", NOVEMBER + 13 * S, 70, 1, false);
+    assert_values(s, "°F", (double[]){ 212, 68, 68, 68, 70 }, 5);
+    write_in_unit(s, "bar", NOVEMBER + 14 * S, 8, 1, false);
+    assert_values(s, "bar", (double[]){ 5, 6, 8 }, 3);
+}
+
 CASE(a_unit_stated_later_keeps_the_points)
 {
     struct history_series series;
