@@ -146,15 +146,15 @@ static bool span_of(struct log *log, const char *folder, int month, int64_t *fir
     return *first_us <= *last_us;
 }
 
-/* Returns true if the history has a pause of more than a week before the present, or between its newest two months. Skips months of
-   the future: they are left from a clock that was set back. */
+/* Returns true if the history has a pause of more than a week before the present, one that ended within the last week, or one between
+   its newest two months. Skips months of the future: they are left from a clock that was set back. */
 static bool has_pause(struct log *log, const char *folder, int64_t now_us)
 {
     size_t count;
     int *months = month_list(folder, &count), seen = 0;
     int64_t since_us = now_us, first_us, last_us;
     bool pause = false;
-    for (size_t i = count; i > 0 && seen < 2 && !pause; i--) {
+    for (size_t i = count; i > 0 && (seen < 2 || since_us > now_us - WEEK_NS / 1000) && !pause; i--) {
         if (!span_of(log, folder, months[i - 1], &first_us, &last_us) || first_us > now_us)
             continue;
         pause = since_us - last_us > WEEK_NS / 1000;

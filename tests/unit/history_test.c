@@ -1076,6 +1076,17 @@ CASE(a_jump_of_the_clock_deletes_nothing_for_a_week)
     assert_true(retention_by_age(&again, s->log, s->folder, week_us * 1000, (jump_us + 100 * S + week_us) * 1000));
 }
 
+/* The clock jumps at the end of a month, and the daemon starts again at the beginning of the next. */
+CASE(a_jump_before_the_end_of_a_month_deletes_nothing_for_a_week)
+{
+    const int64_t day_us = 86400 * S, border_us = month_begin_us(month_of(NOVEMBER) + 25);
+    record(s, NOVEMBER, 100);
+    record(s, border_us - day_us, 100);
+    record(s, border_us, 100);
+    assert_false(retention_by_age(&(struct retention_clock){ 0 }, s->log, s->folder, 0, (border_us + 5 * day_us) * 1000));
+    assert_true(retention_by_age(&(struct retention_clock){ 0 }, s->log, s->folder, 0, (border_us + 6 * day_us + S) * 1000));
+}
+
 /* --- deleting the beginning of a month that alone is too large ----------------------------------------------------------------- */
 
 enum { LOT = 60000 };
