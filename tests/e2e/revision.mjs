@@ -240,16 +240,65 @@ test('the review names equipment that an asset loses, and its sensors lose their
         { name: 'Motor', mesh: 0, translation: [3, 0, 0] }];
     writeFileSync(model, JSON.stringify(boxModel(nodes, { scene: [0, 1] })));
     good(run('plantcast', 'import', model, '-o', plant));
-    writeFileSync(list, 'Tag Name;Group;Asset;Node;Place;X;Y;Z\nT-M;temperature;Skid;;;3.5;0;1\nT-S;temperature;Skid;;;0.5;0;1\n');
+    writeFileSync(list, 'Tag Name;Group;Asset;Node;Place;X;Y;Z\nT-M;temperature;Skid;;;3.5;0;1\n' +
+        'T-N;temperature;Skid;Motor;;;;\nT-S;temperature;Skid;;;0.5;0;1\n');
     // In the new export, the motor stands in the same place, but is no longer part of the skid.
     nodes[0] = { name: 'Skid', mesh: 0 };
     writeFileSync(model, JSON.stringify(boxModel(nodes, { scene: [0, 1, 2] })));
     const said = good(run('plantcast', 'import', model, '-o', plant));
     assert.match(said.stdout, /asset +node lost +Skid +.*Motor no longer belongs to the asset/);
-    assert.match(said.stdout, /tag +place lost +T-M +on Skid: its node Motor no longer belongs to the asset/);
+    assert.match(said.stdout, /tag +place lost +T-M +on Skid: its node Skid\/Motor no longer belongs to the asset/);
+    assert.match(said.stdout, /tag +place lost +T-N +on Skid: its node Skid\/Motor no longer belongs to the asset/);
     assert.ok(review(plant).includes('asset added Motor'));
     assert.match(readFileSync(list, 'utf8'), /^T-M;temperature;Skid;;equipment;;;$/m);
+    assert.match(readFileSync(list, 'utf8'), /^T-N;temperature;Skid;;equipment;;;$/m);
     assert.match(readFileSync(list, 'utf8'), /^T-S;temperature;Skid;;;0\.5;0;1$/m);
+}));
+
+test('a path pattern decides which asset a node belongs to that moves to another parent', { skip: notBuilt }, () => inFolder((folder) => {
+    const model = join(folder, 'm.gltf');
+    const units = (tree) => {
+        const nodes = [];
+        const add = ([name, below]) => {
+            const index = nodes.push({ name }) - 1;
+            Object.assign(nodes[index], Array.isArray(below) ? { children: below.map(add) } : { mesh: 0, translation: [below, 0, 0] });
+            return index;
+        };
+        const scene = tree.map(add);
+        writeFileSync(model, JSON.stringify(boxModel(nodes, { scene })));
+    };
+    const P1 = ['P-1', 0], P2 = ['P-2', 4], Q1 = ['Q-1', 20];
+    const old = [['Unit 1', [P1, P2]], ['Unit 2', [Q1]]];
+    for (const [was, is, first, second, lost] of [
+        [old, [['Unit 1', [P1]], ['Unit 2', [Q1, P2]]], 'Unit 1/*', 'Unit 1/*', true],
+        [old, [['Unit 1', [P1]], ['Unit 2', [Q1, P2]]], 'Unit 1/**', 'Unit 1/**', true],
+        [old, [['Unit 1', [P1]], ['Unit 2', [Q1, P2]]], 'Unit 1/P-2', null, true],
+        [old, [['Unit 2', [Q1, P1, P2]]], 'Unit 1/*', null, true],
+        [[['Unit 1', [P1, ['Rack', [P2]]]], ['Unit 2', [Q1]]], [['Unit 1', [P1]], ['Unit 2', [Q1, ['Rack', [P2]]]]], 'Unit 1/Rack/*', null,
+            true],
+        [old, [['Unit 1', [P1, ['Rack', [P2]]]], ['Unit 2', [Q1]]], 'Unit 1/P-*', ['Unit 1/P-*', 'P-2'], false],
+        [old, [['Unit 1A', [P1, P2]], ['Unit 2', [Q1]]], 'Unit 1/*', ['P-1', 'P-2'], false],
+        [old, [['Site', [['Unit 1', [P1, P2]], ['Unit 2', [Q1]]]]], '/Unit 1/*', ['P-1', 'P-2'], false],
+    ]) {
+        const plant = mkdtempSync(join(folder, 'plant-'));
+        units(was);
+        good(run('plantcast', 'import', model, '-o', plant));
+        writeFileSync(join(plant, 'plant.yaml'), `plant: { name: units }
+assets:
+  - { id: U1, model: m.glb, nodes: ${JSON.stringify(first)} }
+  - { id: U2, model: m.glb, nodes: "Unit 2/*" }
+groups:
+  - { id: temperature, unit: °C, min: 0, max: 100 }
+tags: tags.csv
+`);
+        units(is);
+        good(run('plantcast', 'import', model, '-o', plant));
+        const text = readFileSync(join(plant, 'plant.yaml'), 'utf8'), now = /id: U1, model: m.glb, nodes: (.*) \}/.exec(text);
+        assert.deepEqual(now && JSON.parse(now[1]), second, `${first}: ${text}`);
+        assert.match(text, /id: U2, model: m.glb, nodes: "Unit 2\/\*" \}/);
+        assert.equal(review(plant).includes('asset node lost U1'), lost, `${first}: ${review(plant).join('\n')}`);
+        assert.ok(!review(plant).some((row) => row.startsWith('asset added')), review(plant).join('\n'));
+    }
 }));
 
 test('an import revises a tag list in another folder, or behind a symlink', { skip: notBuilt }, () => inFolder((folder) => {

@@ -2,6 +2,7 @@
 /* Finds the model nodes that a pattern matches: looks up plain names in a sorted list, and tests all nodes against other patterns. */
 #include "preprocess/import/revision/asset_pattern.h"
 
+#include <fnmatch.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -82,21 +83,22 @@ static char *exact_pattern(struct asset_patterns *patterns, uint32_t node)
     return usable ? mem_strdup(name) : mem_printf("#%u", patterns->after->nodes[node].number);
 }
 
-enum asset_pattern_change asset_patterns_follow(struct asset_patterns *patterns, const char *pattern, const bool *before, char **out)
+enum asset_pattern_change asset_patterns_follow(struct asset_patterns *patterns, const char *pattern, const bool *before, int *node,
+                                                char **out)
 {
     size_t old_count = find(patterns, patterns->before, patterns->old_names, pattern);
-    uint32_t node = old_count > 0 ? patterns->found[0] : 0;
+    *node = old_count > 0 ? (int)patterns->found[0] : -1;
     for (size_t i = 0; before && i < old_count; i++)
         if (before[patterns->found[i]]) {
-            node = patterns->found[i];
+            *node = (int)patterns->found[i];
             break;
         }
-    int other = old_count > 0 ? patterns->pairs->to_new[node] : -1;
+    int other = *node >= 0 ? patterns->pairs->to_new[*node] : -1;
     size_t new_count = find(patterns, patterns->after, patterns->new_names, pattern);
     bool numbered = pattern[0] == '#', still = false;
     for (size_t i = 0; i < new_count; i++)
         still |= patterns->found[i] == (uint32_t)other;
-    if (other >= 0 && !still && (old_count == 1 || before || new_count == 0)) {
+    if (other >= 0 && !still) {
         *out = numbered ? mem_printf("#%u", patterns->after->nodes[other].number) : exact_pattern(patterns, (uint32_t)other);
         return ASSET_PATTERN_OTHER;
     }
@@ -114,8 +116,41 @@ static void add_line(struct text *out, const char *sign, const char *pattern)
     text_add(out, "%s%s%s", out->length > 0 ? "\n" : "", sign, pattern);
 }
 
+/* Returns the nearest ancestor that has a counterpart in the other model, or -1. */
+static int paired_ancestor(const struct model_header *header, const int *pairs, int node)
+{
+    do
+        node = header->nodes[node].parent;
+    while (node >= 0 && pairs[node] < 0);
+    return node;
+}
+
+/* Returns whether `pattern`, which matches a node with this name, names the node's ancestors (nodes.c). */
+static bool is_path(const char *pattern, const char *name)
+{
+    return strchr(pattern, '/') && strncmp(pattern, "mesh:", 5) != 0 && strcmp(pattern, name) != 0 && fnmatch(pattern, name, 0) != 0;
+}
+
+/* Returns whether a node no longer matches a path pattern because one of the ancestors that the path names has become another
+ * node. Ignores ancestors that only one of the models has: these were renamed, added or removed. */
+static bool has_moved(const struct asset_patterns *patterns, const char *pattern, uint32_t node)
+{
+    int from = (int)node, to = patterns->pairs->to_new[node];
+    bool any_depth = strstr(pattern, "**");
+    if (to < 0 || !is_path(pattern, patterns->before->nodes[node].name))
+        return false;
+    for (const char *slash = strchr(pattern, '/'); slash; slash = any_depth ? slash : strchr(slash + 1, '/')) {
+        from = paired_ancestor(patterns->before, patterns->pairs->to_new, from);
+        to = paired_ancestor(patterns->after, patterns->pairs->to_old, to);
+        if (from < 0 || to < 0 || patterns->pairs->to_new[from] != to)
+            return from >= 0 || to >= 0;
+    }
+    return false;
+}
+
 /* Adds the patterns that match, in the new model, the counterparts of all nodes that `pattern` matches in the old model: the pattern
- * itself if it still matches a node, and an exact pattern for each counterpart that it no longer matches. */
+ * itself if it still matches a node, and an exact pattern for each counterpart that it no longer matches. Does not add nodes that
+ * have moved out of an asset's path pattern, because another asset's pattern may match them now. */
 static void follow_several(struct asset_patterns *patterns, const char *pattern, size_t old_count, const char *sign, struct text *out)
 {
     uint32_t *olds = mem_array(old_count, sizeof(*olds));
@@ -128,7 +163,7 @@ static void follow_several(struct asset_patterns *patterns, const char *pattern,
         add_line(out, sign, pattern);
     for (size_t i = 0; i < old_count; i++) {
         int other = patterns->pairs->to_new[olds[i]];
-        if (other < 0 || matched[other])
+        if (other < 0 || matched[other] || (!*sign && has_moved(patterns, pattern, olds[i])))
             continue;
         char *exact = exact_pattern(patterns, (uint32_t)other);
         add_line(out, sign, exact);
@@ -145,12 +180,13 @@ static char *follow_line(struct asset_patterns *patterns, const char *line)
     const char *sign = line[0] == '!' ? "!" : "", *pattern = line + strlen(sign);
     struct text out = { 0 };
     char *other = NULL;
+    int node;
     size_t old_count = find(patterns, patterns->before, patterns->old_names, pattern);
-    if (old_count > 1) {
+    if (old_count > 1 || (old_count == 1 && !*sign && has_moved(patterns, pattern, patterns->found[0]))) {
         follow_several(patterns, pattern, old_count, sign, &out);
         return out.at;
     }
-    enum asset_pattern_change change = asset_patterns_follow(patterns, pattern, NULL, &other);
+    enum asset_pattern_change change = asset_patterns_follow(patterns, pattern, NULL, &node, &other);
     if (change != ASSET_PATTERN_GONE)
         add_line(&out, sign, change == ASSET_PATTERN_OTHER ? other : pattern);
     mem_free(other);

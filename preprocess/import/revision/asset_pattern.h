@@ -20,13 +20,16 @@ void asset_patterns_finish(struct asset_patterns *patterns);
 enum asset_pattern_change { ASSET_PATTERN_SAME, ASSET_PATTERN_OTHER, ASSET_PATTERN_GONE };
 /* Determines how a pattern (without a leading "!") must change: not at all, to another text, or not possible because the new
  * model has no such node. before: nodes of the old model that are preferred if the pattern matches several; NULL: no
- * preference. For ASSET_PATTERN_OTHER, *out receives the new pattern, which the caller frees with mem_free. */
-enum asset_pattern_change asset_patterns_follow(struct asset_patterns *patterns, const char *pattern, const bool *before, char **out);
+ * preference. *node receives the old model's node whose pattern is followed, or -1 if the pattern matches none there. For
+ * ASSET_PATTERN_OTHER, *out receives the new pattern, which the caller frees with mem_free. */
+enum asset_pattern_change asset_patterns_follow(struct asset_patterns *patterns, const char *pattern, const bool *before, int *node,
+                                                char **out);
 
 /* Updates an asset's node patterns to the new model. lines: one pattern per line. Returns the new patterns in the same form, or
  * NULL if none is left that matches a node. A pattern that matched several nodes keeps them all: exact patterns are added for
- * those that it no longer matches. If any pattern changed, (*nodes)[i] is the text that replaces pattern i, one pattern per line,
- * or NULL if it is deleted. The caller frees the result, each element of *nodes, and *nodes with mem_free. */
+ * those that it no longer matches, except for nodes that have left the parent that a path pattern names. If any pattern
+ * changed, (*nodes)[i] is the text that replaces pattern i, one pattern per line, or NULL if it is deleted. The caller frees
+ * the result, each element of *nodes, and *nodes with mem_free. */
 char *asset_patterns_update(struct asset_patterns *patterns, const char *lines, char ***nodes, size_t *node_count);
 
 #endif

@@ -156,10 +156,28 @@ static void lose_equipment(struct planning *p, const struct plant_tag *tag)
     say(p, REVISION_TAG, "equipment lost", tag->name, "asset %s is no longer in the model", p->input->plant->assets[tag->asset].id);
 }
 
+/* Returns whether the asset loses this node of the old model; if so, the tag on it loses its place. */
+static bool lose_node(struct planning *p, const struct plant_tag *tag, int node)
+{
+    if (node < 0 || !p->lost[node])
+        return false;
+    char *path = path_of(&p->states.before.outline, (size_t)node), *detail = mem_printf("its node %s no longer belongs to the asset", path);
+    lose_place(p, tag, detail);
+    mem_free(detail);
+    mem_free(path);
+    return true;
+}
+
 static void follow_node(struct planning *p, const struct plant_tag *tag)
 {
     char *pattern = NULL;
-    switch (asset_patterns_follow(&p->patterns, tag->place.node, p->before, &pattern)) {
+    int node;
+    enum asset_pattern_change change = asset_patterns_follow(&p->patterns, tag->place.node, p->before, &node, &pattern);
+    if (lose_node(p, tag, node)) {
+        mem_free(pattern);
+        return;
+    }
+    switch (change) {
     case ASSET_PATTERN_SAME: break;
     case ASSET_PATTERN_OTHER: {
         struct tag_edit *edit = edit_tag(p, tag);
@@ -189,12 +207,8 @@ static void follow_part(struct planning *p, const struct plant_tag *tag, const s
         in_model(asset, tag->place.position_m, at);
         node = model_states_nearest(&p->states, p->before, at);
     }
-    if (node >= 0 && p->lost[node]) {
-        char *detail = mem_printf("its node %s no longer belongs to the asset", p->states.before.outline.nodes[node].name);
-        lose_place(p, tag, detail);
-        mem_free(detail);
+    if (lose_node(p, tag, node))
         return;
-    }
     if (whole->change == STATES_CHANGED) {
         bool *one = mem_array(old->header.count, sizeof(*one));
         if (node >= 0)
