@@ -92,6 +92,14 @@ void model_outline_add_printable(struct text *out, const char *text)
     }
 }
 
+void model_outline_name(const struct model_outline *outline, size_t node, struct text *out)
+{
+    if (outline->nodes[node].name[0])
+        model_outline_add_printable(out, outline->nodes[node].name);
+    else
+        text_add(out, "#%u", outline->header.nodes[node].number);
+}
+
 void model_outline_path(const struct model_outline *outline, size_t node, struct text *out)
 {
     int parent = outline->header.nodes[node].parent;
@@ -99,10 +107,7 @@ void model_outline_path(const struct model_outline *outline, size_t node, struct
         model_outline_path(outline, (size_t)parent, out);
         text_add(out, "/");
     }
-    if (outline->nodes[node].name[0])
-        model_outline_add_printable(out, outline->nodes[node].name);
-    else
-        text_add(out, "#%u", outline->header.nodes[node].number);
+    model_outline_name(outline, node, out);
 }
 
 bool model_outline_extent(const struct model_box *box, double size[3], double centre[3])

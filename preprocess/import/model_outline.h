@@ -40,8 +40,9 @@ const char *model_outline_property(const struct outline_node *node, const char *
 /* Appends text to `out`. Control characters and invalid UTF-8 become U+FFFD. */
 void model_outline_add_printable(struct text *out, const char *text);
 
-/* Appends the node's path from the root of the scene: names separated by slashes, with "#12" for a node without a name. Control
- * characters become U+FFFD. */
+/* Appends the node's name, or "#12" for a node without a name. Control characters become U+FFFD. */
+void model_outline_name(const struct model_outline *outline, size_t node, struct text *out);
+/* Appends the node's path from the root of the scene: names like those of model_outline_name(), separated by slashes. */
 void model_outline_path(const struct model_outline *outline, size_t node, struct text *out);
 
 /* Appends a summary of the model without a line end: "4,679 nodes, 592 unnamed; 52,830 triangles; 21.5 x 22.6 x 3.9 m if the

@@ -168,6 +168,10 @@ T6;temperature;second;TT-9;;;;;f
     assert.match(good(run('plantcast', 'import', model, '-o', plant)).stdout, /plant\.yaml: unchanged/);
     good(run('plantcast', 'import', '--undo', '-o', plant));
     assert.deepEqual(filesOf(plant), first);
+    boxes(model, [{ ...A, name: '' }, { ...B, name: 'B\x01' }, C, D, E, T]);
+    const unnamed = good(run('plantcast', 'import', model, '-o', plant, '--dry-run')).stdout;
+    assert.match(unnamed, /asset +renamed +first +now #0; the asset keeps its id/);
+    assert.match(unnamed, /asset +renamed +second +now B\ufffd; the asset keeps its id/);
     // A model without any node name of the plant belongs to another plant: the import must refuse it.
     boxes(model, [{ name: 'X', at: [100, 0, 0] }]);
     const other = run('plantcast', 'import', model, '-o', plant);

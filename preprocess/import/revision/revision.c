@@ -71,6 +71,13 @@ static char *path_of(const struct model_outline *outline, size_t node)
     return path.at;
 }
 
+static char *name_of(const struct model_outline *outline, size_t node)
+{
+    struct text name = { 0 };
+    model_outline_name(outline, node, &name);
+    return name.at;
+}
+
 /* Adds review rows about nodes that were added, removed or renamed. Of a whole subtree, only the topmost node gets a row. */
 static void review_nodes(struct planning *p)
 {
@@ -85,8 +92,10 @@ static void review_nodes(struct planning *p)
         char *path = p->roots[i] || !((other < 0 && first) || (renamed && !parent_renamed)) ? NULL : path_of(old, i);
         if (path && other < 0)
             say(p, REVISION_NODE, "removed", path, "%zu nodes", old->header.nodes[i].end - i);
-        else if (path)
-            say(p, REVISION_NODE, "renamed", path, "now %s", new->nodes[other].name);
+        char *name = path && other >= 0 ? name_of(new, (size_t)other) : NULL;
+        if (name)
+            say(p, REVISION_NODE, "renamed", path, "now %s", name);
+        mem_free(name);
         mem_free(path);
     }
     for (size_t i = 0; i < new->header.count; i++) {
@@ -273,7 +282,9 @@ static void review_asset(struct planning *p, const struct plant_asset *asset, st
         /* rename the asset's tag only if it still equals the node's name in the old model */
         if (!strcmp(asset->tag, without_slash(old->nodes[root].name)) && *name)
             edit->tag = mem_strdup(without_slash(name));
-        say(p, REVISION_ASSET, "renamed", asset->id, "now %s; the asset keeps its id", name);
+        char *printable = name_of(new, (size_t)other);
+        say(p, REVISION_ASSET, "renamed", asset->id, "now %s; the asset keeps its id", printable);
+        mem_free(printable);
     }
     double moved_m = motion->moved * asset->unit_m;
     if (motion->change == STATES_CHANGED)
