@@ -223,20 +223,25 @@ static void add_resolved(json_t *asset, struct log *log, const char *folder, uin
     json_decref(report);
 }
 
+/* Returns whether two manifest entries are of the same model, or are the same asset with the same recipe (hash of model and
+ * cutting parameters). The hash `model` changes with panoramas too, and ids change when assets are renamed. */
+static bool same_model(const json_t *a, const json_t *b)
+{
+    return json_equal(json_object_get(a, "model"), json_object_get(b, "model")) ||
+           (json_equal(json_object_get(a, "id"), json_object_get(b, "id")) &&
+            json_equal(json_object_get(a, "recipe"), json_object_get(b, "recipe")));
+}
+
 /* Adds the list of the model's textures and extensions that are not drawn to an asset's manifest entry. If this run did not
- * parse the model, copies the list from the asset's entry in the old manifest. That entry must have the same recipe (hash of
- * model and cutting parameters). */
+ * parse the model, copies the model's list from the old manifest. */
 static void add_left_out(json_t *asset, const struct folder_entry *entry, const json_t *old_assets)
 {
     json_t *texts = entry->left_out ? json_array() : NULL;
     for (size_t i = 0; entry->left_out && i < entry->left_out_count; i++)
         json_array_append_new(texts, json_string(entry->left_out[i]));
-    for (size_t i = 0; !entry->left_out && !texts && i < json_array_size(old_assets); i++) {
-        json_t *old = json_array_get(old_assets, i);
-        if (json_equal(json_object_get(old, "id"), json_object_get(asset, "id")) &&
-            json_equal(json_object_get(old, "recipe"), json_object_get(asset, "recipe")))
-            texts = json_incref(json_object_get(old, "left_out"));
-    }
+    for (size_t i = 0; !entry->left_out && !texts && i < json_array_size(old_assets); i++)
+        if (same_model(json_array_get(old_assets, i), asset))
+            texts = json_incref(json_object_get(json_array_get(old_assets, i), "left_out"));
     if (json_array_size(texts) > 0)
         json_object_set(asset, "left_out", texts);
     json_decref(texts);

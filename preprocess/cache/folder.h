@@ -73,8 +73,8 @@ struct folder_entry {
     const double *placement; /* matrix of 16 numbers, column-major: transform from the asset frame to the plant frame */
     const char *const *tags; /* tags of the asset's sensors, in the order of the asset file */
     size_t tag_count;
-    /* list of the model's textures and extensions that are not drawn, for plantcastd --check; NULL: this run did not parse the
-     * model, so the manifest keeps its old list */
+    /* list of the model's textures and extensions that are not drawn, for plantcastd --check; NULL: copy the model's list from the
+     * old manifest. Give each model's list to one asset only. */
     const char *const *left_out;
     size_t left_out_count;
 };

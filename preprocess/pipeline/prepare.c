@@ -529,8 +529,8 @@ static bool any_good(const struct prepare *prepare)
     return false;
 }
 
-/* Lists the textures and extensions of the asset's model that are not drawn, if this run parsed the model. Only a model's first
- * asset gets the texts, because a plant may have thousands of assets of the same model. */
+/* Lists the textures and extensions of the asset's model that are not drawn; NULL if this run did not parse the model. Only a
+ * model's first asset gets the texts, because a plant may have thousands of assets of the same model. */
 static void name_left_out(const struct prepare *prepare, size_t index, struct folder_entry *entry)
 {
     static const char *const none[] = { NULL };
@@ -538,10 +538,12 @@ static void name_left_out(const struct prepare *prepare, size_t index, struct fo
     size_t first = 0;
     while (prepare->assets[first].model != prepare->assets[index].model)
         first++;
-    if (!model->was_parsed)
-        return;
-    entry->left_out = first == index && model->left_out ? (const char *const *)model->left_out : none;
-    entry->left_out_count = first == index ? model->left_out_textures : 0;
+    if (first != index || (model->was_parsed && !model->left_out))
+        entry->left_out = none;
+    else if (model->was_parsed) {
+        entry->left_out = (const char *const *)model->left_out;
+        entry->left_out_count = model->left_out_textures;
+    }
 }
 
 /* Returns the hash of the other files that the pictures depend on: panoramas, and the readings to which interpolations are fitted;

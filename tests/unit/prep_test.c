@@ -339,6 +339,43 @@ CASE(the_hash_of_a_model_covers_the_files_that_it_refers_to)
     assert_string_equal(model_of(s), plain);
 }
 
+/* Prepares the plant with these assets, and returns in the manifest's assets the one with the list of ignored extensions. Fails
+   unless exactly one has it. */
+static const char *asset_with_left_out(struct prep_case *s, const char *assets, const char *more)
+{
+    const char *id = NULL;
+    struct text *text = test_text();
+    prep_case_plant(s, test_printf("plant: { name: Parts }\nassets:\n%sgroups: [{ id: temperature, unit: K, min: 0, max: 1 }]\n"
+                                   "tags: tags.csv\n%s",
+                                   assets, more));
+    prep_case_expect(s, "$PLANT", 0);
+    prep_case_read(s, "plant.prepared/manifest.json", text);
+    const json_t *root = prep_case_json(text);
+    for (size_t i = 0; i < json_array_size(json_object_get(root, "assets")); i++)
+        if (json_array_size(json_object_get(asset_of(root, i), "left_out")) > 0) {
+            assert_null(id);
+            id = test_printf("%s", json_string_value(json_object_get(asset_of(root, i), "id")));
+        }
+    assert_non_null(id);
+    return id;
+}
+
+CASE(the_list_of_ignored_extensions_stays_while_assets_are_renamed)
+{
+    static const char hdr[] = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n\x80\x40\x20\x84\x80\x80\x80\x80";
+    static const char a[] = "  - { id: A, model: model.glb, nodes: 'plate-1', up: z }\n";
+    static const char renamed[] = "  - { id: A2, model: model.glb, nodes: 'plate-1', up: z }\n";
+    static const char b[] = "  - { id: B, model: model.glb, nodes: 'plate-2', up: z }\n";
+    write_model(s, test_printf("\"extensionsUsed\":[\"ACME_bent\"],%s", first_nodes));
+    prep_case_tags(s, "");
+    temp_write(s->folder, "sky1.hdr", hdr, sizeof(hdr) - 1);
+    assert_string_equal(asset_with_left_out(s, test_printf("%s%s", a, b), ""), "A");
+    assert_string_equal(asset_with_left_out(s, test_printf("%s%s", renamed, b), ""), "A2");
+    assert_string_equal(asset_with_left_out(s, test_printf("%s%s", renamed, b), "environment: sky1.hdr\n"), "A2");
+    assert_string_equal(asset_with_left_out(s, b, "environment: sky1.hdr\n"), "B");
+    assert_string_equal(asset_with_left_out(s, test_printf("%s%s", a, b), "environment: sky1.hdr\n"), "A");
+}
+
 /* Textures are read: PNG by plantcast-prep itself, other formats by a module in a package of its own, which may be missing. */
 CASE(textures_are_read)
 {
