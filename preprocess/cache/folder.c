@@ -17,6 +17,7 @@
 
 #include "base/files/atomic_file.h"
 #include "base/mem.h"
+#include "base/text/json_text.h"
 #include "base/text/text.h"
 #include "preprocess/cache/build_cache.h"
 
@@ -238,7 +239,7 @@ static void add_left_out(json_t *asset, const struct folder_entry *entry, const 
 {
     json_t *texts = entry->left_out ? json_array() : NULL;
     for (size_t i = 0; entry->left_out && i < entry->left_out_count; i++)
-        json_array_append_new(texts, json_string(entry->left_out[i]));
+        json_array_append_new(texts, json_of_text(entry->left_out[i]));
     for (size_t i = 0; !entry->left_out && !texts && i < json_array_size(old_assets); i++)
         if (same_model(json_array_get(old_assets, i), asset))
             texts = json_incref(json_object_get(json_array_get(old_assets, i), "left_out"));
@@ -265,11 +266,8 @@ static char *manifest_text(struct log *log, const char *folder, const struct fol
             json_array_append_new(tags, json_string(entries[i].tags[t]));
         json_t *asset = json_pack("{s:s, s:s, s:s, s:s, s:s, s:s, s:o, s:o}", "id", entries[i].id, "file", file, "key", key, "recipe",
                                   recipe, "model", model, "cuts", cuts, "placement", placement, "tags", tags);
-        const char *missing = entries[i].missing;
-        if (missing) {
-            json_t *why = json_string(missing);
-            json_object_set_new(asset, "missing", why ? why : json_string("not prepared: plantcast-prep cannot use its output folder"));
-        }
+        if (entries[i].missing)
+            json_object_set_new(asset, "missing", json_of_text(entries[i].missing));
         add_surface(asset, folder, entries[i].geometry_key);
         add_resolved(asset, log, folder, entries[i].key);
         add_left_out(asset, &entries[i], json_object_get(old_root, "assets"));

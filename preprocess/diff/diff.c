@@ -9,6 +9,7 @@
 
 #include "base/math/vec.h"
 #include "base/mem.h"
+#include "base/text/utf8.h"
 #include "plant/models/transform.h"
 #include "preprocess/diff/diff_shape.h"
 #include "preprocess/pipeline/prepare.h"
@@ -257,6 +258,7 @@ static void find_renamed(struct diff *diff, const struct asset_pair *pair, const
             *guess = 0;
         size_t length = strlen(why);
         snprintf(why + length, MODEL_WHY_BYTES - length, ": node %s has the same shape at the same place", name);
+        utf8_drop_invalid(why); /* the shortened name may end inside a character */
         return;
     }
 }

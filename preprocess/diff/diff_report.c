@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "base/mem.h"
+#include "base/text/json_text.h"
 #include "preprocess/diff/diff.h"
 #include "preprocess/report/text_table.h"
 
@@ -136,7 +137,8 @@ void diff_text(const struct diff *diff, FILE *out)
 
 static json_t *asset_json(const struct diff_asset *asset)
 {
-    json_t *root = json_pack("{s:s,s:s,s:s?}", "id", asset->id, "change", diff_changes[asset->change], "why", asset->why);
+    json_t *root = json_pack("{s:s,s:s,s:o?}", "id", asset->id, "change", diff_changes[asset->change], "why",
+                             asset->why ? json_of_text(asset->why) : NULL);
     if (asset->triangles[0] && asset->triangles[1])
         json_object_update_new(root, json_pack("{s:f,s:[fff],s:f,s:f,s:f,s:I,s:I}", "moved_m", asset->moved_m, "move_m", asset->move_m[0],
                                                asset->move_m[1], asset->move_m[2], "turned_deg", asset->turned_deg, "apart_m",
@@ -173,11 +175,12 @@ bool diff_json(const struct diff *diff, FILE *out)
     for (size_t i = 0; i < diff->sensor_count; i++)
         json_array_append_new(sensors, sensor_json(&diff->sensors[i]));
     for (size_t i = 0; i < diff->orphan_count; i++)
-        json_array_append_new(orphans, json_pack("{s:s,s:s,s:s}", "tag", diff->orphans[i].tag, "asset", diff->orphans[i].asset, "why",
-                                                 diff->orphans[i].why));
-    json_t *root = json_pack("{s:s,s:s,s:o,s:o,s:o,s:o,s:o,s:o}", "old", diff->old_side.path, "new", diff->new_side.path, "counts", all,
-                             "assets", assets, "sensors", sensors, "tags_added", names_json(diff->tags_added, diff->added_count),
-                             "tags_removed", names_json(diff->tags_removed, diff->removed_count), "orphans", orphans);
+        json_array_append_new(orphans, json_pack("{s:s,s:s,s:o}", "tag", diff->orphans[i].tag, "asset", diff->orphans[i].asset, "why",
+                                                 json_of_text(diff->orphans[i].why)));
+    json_t *root =
+        json_pack("{s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o}", "old", json_of_text(diff->old_side.path), "new", json_of_text(diff->new_side.path),
+                  "counts", all, "assets", assets, "sensors", sensors, "tags_added", names_json(diff->tags_added, diff->added_count),
+                  "tags_removed", names_json(diff->tags_removed, diff->removed_count), "orphans", orphans);
     char *text = root ? json_dumps(root, JSON_INDENT(1) | JSON_REAL_PRECISION(9)) : NULL;
     if (text)
         fprintf(out, "%s\n", text);

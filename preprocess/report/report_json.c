@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "base/mem.h"
+#include "base/text/json_text.h"
 #include "preprocess/cache/folder.h"
 #include "plant/models/asset_size.h"
 #include "preprocess/report/report.h"
@@ -24,9 +25,10 @@ static json_t *sensors_json(const struct prepare *prepare, const struct prepare_
 static json_t *asset_json(const struct prepare *prepare, const struct prepare_asset *asset)
 {
     char *file = folder_file_name(asset->key);
-    json_t *root = json_pack("{s:s,s:s,s:s,s:I,s:I,s:f,s:s?,s:o}", "id", asset->plant->id, "state", report_states[asset->state], "file",
+    json_t *root = json_pack("{s:s,s:s,s:s,s:I,s:I,s:f,s:o?,s:o}", "id", asset->plant->id, "state", report_states[asset->state], "file",
                              file, "triangles", (json_int_t)asset->triangles, "vertices", (json_int_t)asset->vertices, "seconds",
-                             asset->seconds, "rebuilt_because", asset->rebuilt_because, "sensors", sensors_json(prepare, asset));
+                             asset->seconds, "rebuilt_because", asset->rebuilt_because ? json_of_text(asset->rebuilt_because) : NULL,
+                             "sensors", sensors_json(prepare, asset));
     if (asset_longest_m(asset->size_m) > 0)
         json_object_set_new(root, "size_m", json_pack("[f,f,f]", asset->size_m[0], asset->size_m[1], asset->size_m[2]));
     if (asset->reported) {
@@ -39,10 +41,10 @@ static json_t *asset_json(const struct prepare *prepare, const struct prepare_as
 
 static json_t *model_json(const struct model_file *model)
 {
-    json_t *root = json_pack("{s:s,s:b}", "path", model->path, "read", model->was_parsed);
+    json_t *root = json_pack("{s:o,s:b}", "path", json_of_text(model->path), "read", model->was_parsed);
     json_t *left_out = json_array();
     for (uint32_t i = 0; i < model->left_out_textures; i++)
-        json_array_append_new(left_out, json_string(model->left_out[i]));
+        json_array_append_new(left_out, json_of_text(model->left_out[i]));
     if (model->was_parsed)
         json_object_update_new(root, json_pack("{s:f,s:I,s:I,s:I,s:I,s:O}", "seconds", model->parse_s, "skipped_lines",
                                                (json_int_t)model->skipped_lines, "skipped_points", (json_int_t)model->skipped_points,
@@ -58,7 +60,7 @@ static json_t *concerns_json(const struct prepare *prepare)
     struct report_concern *concerns = report_concerns(prepare, &count);
     json_t *list = json_array();
     for (size_t i = 0; i < count; i++)
-        json_array_append_new(list, json_pack("{s:s,s:s}", "asset", concerns[i].asset->plant->id, "text", concerns[i].text));
+        json_array_append_new(list, json_pack("{s:s,s:o}", "asset", concerns[i].asset->plant->id, "text", json_of_text(concerns[i].text)));
     report_concerns_free(concerns, count);
     return list;
 }

@@ -48,10 +48,11 @@ static const char lost_rows[] = "T-GONE,400011,Float,plc,temperature,GONE,,50.5,
 
 /* Writes the old or the new model. In the old one, boxes of 1 x 1 x 1 m stand at x = 0, 10, 20 and so on. In the new one, MOVED
    is 2 m farther along y, TURNED (1 x 2 x 3 m) lies on its side, CHANGED is 50 mm higher, GONE is renamed, and the node TT-2 is
-   missing. */
-static void write_model(struct prep_case *c, bool is_new)
+   missing. renamed: new name of GONE; NULL: write the old model. */
+static void write_model(struct prep_case *c, const char *renamed)
 {
     struct model_maker maker;
+    bool is_new = renamed;
     const double s = is_new ? 0.70710678118654752 : 0;
     maker_init(&maker);
     boxes_add(&maker, "SAME", (const double[3]){ 0, 0, 0 }, (const double[3]){ 1, 1, 1 });
@@ -60,7 +61,7 @@ static void write_model(struct prep_case *c, bool is_new)
     boxes_add(&maker, "TURNED", (const double[3]){ 30, 0, 0 }, (const double[3]){ 31, 2, 3 });
     json_object_set_new(maker_get(&maker, "nodes", 3), "rotation", json_pack("[ffff]", s, 0.0, 0.0, is_new ? s : 1));
     boxes_add(&maker, "CHANGED", (const double[3]){ 40, 0, 0 }, (const double[3]){ 41, 1, is_new ? 1.05 : 1 });
-    boxes_add(&maker, is_new ? "VESSEL" : "GONE", (const double[3]){ 50, 0, 0 }, (const double[3]){ 51, 1, 1 });
+    boxes_add(&maker, is_new ? renamed : "GONE", (const double[3]){ 50, 0, 0 }, (const double[3]){ 51, 1, 1 });
     boxes_add(&maker, is_new ? "ADDED" : "DROPPED", (const double[3]){ 60, 0, 0 }, (const double[3]){ 61, 1, 1 });
     if (is_new) /* a box whose name resembles that of the missing GONE; the diff must not take it for GONE */
         boxes_add(&maker, "GONE1", (const double[3]){ 70, 0, 0 }, (const double[3]){ 71, 1, 1 });
@@ -75,8 +76,8 @@ static int set_up(void **state)
     prep_case_set_up(state);
     struct prep_case *c = *state;
     char *rows = test_printf("%s%s", tags_rows, lost_rows);
-    write_model(c, false);
-    write_model(c, true);
+    write_model(c, NULL);
+    write_model(c, "VESSEL");
     write_plant(c, "old", OLD_ASSETS, rows);
     write_plant(c, "new", NEW_ASSETS, rows);
     return 0;
@@ -179,6 +180,25 @@ CASE(a_prepared_folder_stands_for_the_old_plant)
     json_t *root = compare(c, "$FOLDER/old.prepared $FOLDER/new.yaml", 1);
     check_assets(root, false);
     check_tags(root);
+}
+
+CASE(texts_that_are_not_utf8_are_reported)
+{
+    /* the message shortens the name inside a character */
+    char name[60 * 3 + 2] = "A";
+    for (int i = 0; i < 60; i++)
+        memcpy(name + strlen(name), "배", 4);
+    write_model(c, name);
+    json_t *root = compare(c, "$FOLDER/old.yaml $FOLDER/new.yaml", 1);
+    assert_orphan(root, "T-GONE", test_printf("node 'A%.147s", name + 1));
+    assert_non_null(strstr(json_string_value(json_object_get(asset_of(root, "GONE", "removed"), "why")), "has the same shape at the same"));
+    assert_int_equal(symlink(c->folder, temp_path(c->folder, "caf\xe9")), 0);
+    root = compare(c, "$FOLDER/caf\xe9/old.yaml $FOLDER/new.yaml", 1);
+    assert_non_null(strstr(json_string_value(json_object_get(root, "old")), "/caf?/old.yaml"));
+    prep_case_expect(c, "$FOLDER/caf\xe9/old.yaml --report json", 0);
+    const json_t *models = json_object_get(prep_case_json(&c->out), "models");
+    assert_int_equal(json_array_size(models), 1);
+    assert_non_null(strstr(json_string_value(json_object_get(json_array_get(models, 0), "path")), "/caf?/old.glb"));
 }
 
 CASE(nothing_lost_is_no_error)

@@ -66,6 +66,12 @@ TEST(what_matches_nothing_is_named)
     assert_string_equal(taken("mesh:vesel"), "no node's mesh has a name that matches 'mesh:vesel': did you mean 'mesh:vessel'?");
     assert_string_equal(taken("/P-1"), "no node's name or path matches '/P-1'");
     assert_string_equal(taken("P-3/motor"), "no node's name or path matches 'P-3/motor'");
+    /* messages shorten long patterns, but keep no part of a character */
+    char name[80 * 3 + 1] = "";
+    for (int i = 0; i < 80; i++)
+        memcpy(name + strlen(name), "배", 4);
+    assert_string_equal(taken(test_printf("A%s", name)), test_printf("no node's name matches 'A%.117s'", name));
+    assert_string_equal(found(test_printf("A%s", name)), test_printf("the model has no node 'A%.198s'", name));
 }
 
 TEST(single_nodes_are_found_however_they_are_named)

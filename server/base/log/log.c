@@ -13,7 +13,6 @@
 #include "base/mem.h"
 #include "base/system/service_manager.h"
 #include "base/text/json_text.h"
-#include "base/text/utf8.h"
 
 enum { LINE_BYTES = 2048, LASTING = 16 };
 static const int64_t REPEAT_NS = 1000000000, LASTING_FIRST_NS = 60 * NS_PER_S, LASTING_LONGEST_NS = 3600 * NS_PER_S;
@@ -83,28 +82,13 @@ static void emit_text(enum log_level level, const char *text)
     fprintf(stderr, "%s %-5s %s\n", stamp, names[level], text);
 }
 
-/* Converts a text to a JSON string. The text may be invalid UTF-8, because paths and names come from outside. */
-static json_t *json_of(const char *text)
-{
-    json_t *string = json_string(text);
-    if (string)
-        return string;
-    char *clean = mem_strdup(text);
-    for (size_t at = 0, length = strlen(clean), step; at < length; at += step ? step : 1)
-        if ((step = utf8_length(clean + at, length - at)) == 0)
-            clean[at] = '?';
-    string = json_string(clean);
-    mem_free(clean);
-    return string;
-}
-
 static void emit_json(const struct log *log, enum log_level level, enum log_event event, const char *text)
 {
     char stamp[48];
     stamp_now(stamp, sizeof(stamp));
-    json_t *object = json_pack("{s:s, s:s, s:o}", "time", stamp, "level", names[level], "message", json_of(text));
+    json_t *object = json_pack("{s:s, s:s, s:o}", "time", stamp, "level", names[level], "message", json_of_text(text));
     if (log->plant)
-        json_object_set_new(object, "plant", json_of(log->plant));
+        json_object_set_new(object, "plant", json_of_text(log->plant));
     if (event) {
         json_object_set_new(object, "event", json_string(log_event_name(event)));
         json_object_set_new(object, "message_id", json_string(log_event_id(event)));

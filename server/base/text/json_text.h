@@ -8,6 +8,9 @@
    Returns "{}" or "[]" if the value cannot be printed; free the text with mem_free(). */
 char *json_text(json_t *value, int digits);
 
+/* Returns a JSON string. Bytes of `text` that are not UTF-8 become '?', because paths and shortened names may contain them. */
+json_t *json_of_text(const char *text);
+
 /* Returns the text of an object's member, owned by the object; NULL: there is no such member, or it is not a text. */
 static inline const char *json_member_text(const json_t *object, const char *key)
 {

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/text/utf8.h"
 #include "plant/parse/suggest.h"
 
 #define MESH_PREFIX "mesh:"
@@ -177,6 +178,7 @@ static void say_none(const struct pattern *pattern, const char *text, const stru
     char near[160];
     suggest(pattern, model, near, sizeof(near));
     snprintf(why, bytes, forms[pattern->kind], text, near);
+    utf8_drop_invalid(why); /* shortened names may end inside a character */
 }
 
 /* --- applying patterns -------------------------------------------------------------------------------------------------------- */
@@ -243,6 +245,7 @@ size_t nodes_find(const char *pattern, const struct model_node *nodes, size_t co
         char near[160];
         suggest(&one, &model, near, sizeof(near));
         snprintf(why, why_bytes, "the model has no node '%.200s'%s", pattern, near);
+        utf8_drop_invalid(why); /* shortened names may end inside a character */
     }
     pattern_finish(&one);
     return found_count;
