@@ -17,7 +17,7 @@
 #define TOLERANCE_M 0.01
 #define TOLERANCE_OF_SIZE 0.01
 
-const char *const diff_changes[DIFF_CHANGES] = { "same", "added", "removed", "moved", "changed" };
+const char *const diff_changes[DIFF_CHANGES] = { "same", "added", "removed", "moved", "changed", "unknown" };
 
 struct pair_half { /* an asset in one of the two revisions that are compared */
     const struct diff_side_asset *asset;
@@ -44,7 +44,7 @@ static void add_asset(struct diff *diff, struct diff_asset asset)
     diff->assets[diff->asset_count++] = asset;
 }
 
-static const struct diff_side_asset *find_asset(const struct diff_side *side, const char *id)
+static struct diff_side_asset *find_asset(const struct diff_side *side, const char *id)
 {
     for (size_t i = 0; i < side->asset_count; i++)
         if (strcmp(side->assets[i].id, id) == 0)
@@ -52,16 +52,24 @@ static const struct diff_side_asset *find_asset(const struct diff_side *side, co
     return NULL;
 }
 
+static int by_model(const void *a, const void *b)
+{
+    const struct diff_side_asset *const *p = a, *const *q = b;
+    return (*p)->work != (*q)->work ? ((*p)->work < (*q)->work ? -1 : 1) : *p < *q ? -1 : *p > *q;
+}
+
 /* --- one asset ------------------------------------------------------------------------------------------------------------------- */
 
 /* Returns false with the reason in why if the asset has no shape. If this is because a file cannot be read, adds an error to
- * diag (NULL: none). */
-static bool half_open(struct pair_half *half, struct diff_side *side, const struct diff_side_asset *asset, char *why, struct diag *diag)
+ * diff->diag, once for each asset. */
+static bool half_open(struct diff *diff, struct pair_half *half, struct diff_side *side, struct diff_side_asset *asset,
+                      char why[MODEL_WHY_BYTES])
 {
     half->asset = asset;
     if (!diff_side_shape(side, asset, &half->shape, why)) {
-        if (half->shape.unreadable && diag)
-            diag_error(diag, side->path, 0, 0, "asset %s: %s", asset->id, why);
+        if (half->shape.unreadable && !asset->reported)
+            diag_error(diff->diag, side->path, 0, 0, "asset %s: %s", asset->id, why);
+        asset->reported |= half->shape.unreadable;
         return false;
     }
     half->tree = diff_shape_create(&half->shape);
@@ -170,24 +178,47 @@ static double surface_moved(const struct asset_pair *pair, const double place_m[
 }
 
 /* Compares a sensor's position and the surface under it. old_half: the sensor's asset in the old revision. */
-static bool compare_place(struct diff *diff, const struct asset_pair *pair, const struct pair_half *old_half,
-                          const struct diff_side_tag *before, const double place_m[3], const double surface_m[3], struct diff_sensor *found)
+static void compare_place(const struct asset_pair *pair, const struct pair_half *old_half, const struct diff_side_tag *before,
+                          const double place_m[3], const double surface_m[3], struct diff_sensor *found)
 {
     double old_place_m[3], old_surface_m[3];
+    found->moved_m = found->place_moved_m = found->distance_m[0] = NAN;
     if (!old_half->tree || before->column >= old_half->shape.sensor_count || isnan(old_half->shape.places_m[before->column][0]))
-        return false;
+        return;
     found->distance_m[0] = place_sensor(old_half, before->column, old_place_m, old_surface_m);
     found->moved_m = surface_moved(pair, place_m, old_surface_m, surface_m);
     found->place_moved_m = vec_distance(old_place_m, place_m);
     found->far_moved = found->moved_m > pair->tolerance_m;
-    mem_grow(&diff->sensors, &diff->sensor_room, diff->sensor_count + 1, sizeof(*diff->sensors));
-    diff->sensors[diff->sensor_count++] = *found;
-    return true;
 }
 
-static void compare_sensor(struct diff *diff, struct asset_pair *pair, const struct diff_side_tag *tag)
+static void close_moved(struct diff *diff)
 {
-    const struct diff_side_tag *before = diff_side_find_tag(&diff->old_side, tag->name);
+    if (diff->moved)
+        half_close(diff->moved);
+    mem_free(diff->moved);
+    diff->moved = NULL;
+}
+
+/* Returns the old revision of the asset from which a tag has moved to another asset. Keeps it open for the next tag. */
+static const struct pair_half *open_moved(struct diff *diff, struct diff_side_asset *asset)
+{
+    char ignored[MODEL_WHY_BYTES];
+    if (diff->moved && diff->moved->asset == asset)
+        return diff->moved;
+    close_moved(diff);
+    diff->moved = mem_new(sizeof(*diff->moved));
+    half_open(diff, diff->moved, &diff->old_side, asset, ignored);
+    return diff->moved;
+}
+
+struct placed_tag {                           /* a tag in both revisions */
+    const struct diff_side_tag *tag, *before; /* before: the tag in the old revision; NULL: it was no sensor */
+    struct diff_side_asset *from;             /* asset of the tag in the old revision; NULL: the same asset, or none */
+};
+
+static void compare_sensor(struct diff *diff, struct asset_pair *pair, const struct placed_tag *placed)
+{
+    const struct diff_side_tag *tag = placed->tag;
     const struct diff_side_shape *shape = &pair->new_half.shape;
     double place_m[3], surface_m[3];
     if (tag->column >= shape->sensor_count || isnan(shape->places_m[tag->column][0])) {
@@ -198,17 +229,13 @@ static void compare_sensor(struct diff *diff, struct asset_pair *pair, const str
     }
     struct diff_sensor found = { .tag = tag->name, .asset = tag->asset, .limit_m = pair->limit_m, .tolerance_m = pair->tolerance_m };
     found.distance_m[1] = place_sensor(&pair->new_half, tag->column, place_m, surface_m);
-    bool was = false;
-    if (before && before->is_sensor && strcmp(before->asset, tag->asset) == 0) {
-        was = compare_place(diff, pair, &pair->old_half, before, place_m, surface_m, &found);
-    } else if (before && before->is_sensor) {
-        struct pair_half other = { 0 };
-        char ignored[MODEL_WHY_BYTES];
-        found.old_asset = before->asset;
-        half_open(&other, &diff->old_side, find_asset(&diff->old_side, before->asset), ignored,
-                  find_asset(&diff->new_side, before->asset) ? NULL : diff->diag);
-        was = compare_place(diff, pair, &other, before, place_m, surface_m, &found);
-        half_close(&other);
+    bool was = placed->before;
+    if (was) {
+        found.old_asset = placed->from ? placed->from->id : NULL;
+        compare_place(pair, placed->from ? open_moved(diff, placed->from) : &pair->old_half, placed->before, place_m, surface_m, &found);
+        mem_grow(&diff->sensors, &diff->sensor_room, diff->sensor_count + 1, sizeof(*diff->sensors));
+        diff->sensors[diff->sensor_count++] = found;
+        was = !isnan(found.distance_m[0]);
     }
     if (found.distance_m[1] > found.limit_m && (!was || found.distance_m[0] <= found.limit_m))
         orphan(diff, tag->name, tag->asset,
@@ -216,13 +243,33 @@ static void compare_sensor(struct diff *diff, struct asset_pair *pair, const str
                           was ? "; before, the sensor was on the surface" : ""));
 }
 
+static int by_old_asset(const void *a, const void *b)
+{
+    const struct placed_tag *p = a, *q = b;
+    if (p->from == q->from)
+        return p->tag < q->tag ? -1 : p->tag > q->tag;
+    return !p->from || !q->from ? (p->from ? 1 : -1) : by_model(&p->from, &q->from);
+}
+
+/* Compares the sensors of an asset. Sensors that come from other assets are sorted by these assets, so that each asset is opened
+ * only once. */
 static void compare_sensors(struct diff *diff, struct asset_pair *pair)
 {
+    struct placed_tag *placed = mem_array(diff->new_side.tag_count, sizeof(*placed));
+    size_t count = 0;
     for (size_t i = 0; i < diff->new_side.tag_count; i++) {
-        const struct diff_side_tag *tag = &diff->new_side.tags[i];
-        if (tag->is_sensor && strcmp(tag->asset, pair->found.id) == 0)
-            compare_sensor(diff, pair, tag);
+        const struct diff_side_tag *tag = &diff->new_side.tags[i], *before;
+        if (!tag->is_sensor || strcmp(tag->asset, pair->found.id) != 0)
+            continue;
+        before = diff_side_find_tag(&diff->old_side, tag->name);
+        before = before && before->is_sensor ? before : NULL;
+        bool same = !before || strcmp(before->asset, tag->asset) == 0;
+        placed[count++] = (struct placed_tag){ tag, before, same ? NULL : find_asset(&diff->old_side, before->asset) };
     }
+    qsort(placed, count, sizeof(*placed), by_old_asset);
+    for (size_t i = 0; i < count; i++)
+        compare_sensor(diff, pair, &placed[i]);
+    mem_free(placed);
 }
 
 /* Searches the new model for a node with another name that has the old asset's shape at the old position. If there is one,
@@ -273,20 +320,21 @@ static void lose_sensors(struct diff *diff, const char *id, const char *why)
     }
 }
 
-static void compare_asset(struct diff *diff, const struct diff_side_asset *new_asset, double tolerance_m)
+static void compare_asset(struct diff *diff, struct diff_side_asset *new_asset, double tolerance_m)
 {
     struct asset_pair pair = { .found.id = new_asset->id };
-    const struct diff_side_asset *old_asset = find_asset(&diff->old_side, new_asset->id);
+    struct diff_side_asset *old_asset = find_asset(&diff->old_side, new_asset->id);
     char why[MODEL_WHY_BYTES], old_why[MODEL_WHY_BYTES];
-    bool was = old_asset && half_open(&pair.old_half, &diff->old_side, old_asset, old_why, diff->diag);
-    bool is = half_open(&pair.new_half, &diff->new_side, new_asset, why, diff->diag);
-    if (!is) {
+    bool was = old_asset && half_open(diff, &pair.old_half, &diff->old_side, old_asset, old_why);
+    bool is = half_open(diff, &pair.new_half, &diff->new_side, new_asset, why);
+    bool unreadable = pair.old_half.shape.unreadable || pair.new_half.shape.unreadable;
+    if (!is && !pair.new_half.shape.unreadable) {
         if (was)
             find_renamed(diff, &pair, new_asset, tolerance_m, why);
         lose_sensors(diff, new_asset->id, why);
         pair.found.change = DIFF_REMOVED;
-        pair.found.why = mem_strdup(why);
-    } else {
+        pair.found.why = unreadable ? NULL : mem_strdup(why);
+    } else if (is) {
         double diagonal_m = diff_shape_diagonal(pair.new_half.tree);
         pair.limit_m = prepare_far_m(diagonal_m);
         pair.tolerance_m = tolerance_m > 0 ? tolerance_m : fmin(TOLERANCE_M, TOLERANCE_OF_SIZE * diagonal_m);
@@ -297,7 +345,11 @@ static void compare_asset(struct diff *diff, const struct diff_side_asset *new_a
             compare_shapes(&pair);
         compare_sensors(diff, &pair);
     }
-    if (was || (is && !pair.old_half.shape.unreadable)) /* without the old shape, the change is unknown */
+    if (unreadable) {
+        pair.found.change = DIFF_UNKNOWN;
+        pair.found.why = mem_strdup(pair.new_half.shape.unreadable ? why : old_why);
+    }
+    if (was || is || unreadable)
         add_asset(diff, pair.found);
     else
         mem_free(pair.found.why);
@@ -307,23 +359,18 @@ static void compare_asset(struct diff *diff, const struct diff_side_asset *new_a
 
 /* --- the comparison ---------------------------------------------------------------------------------------------------------------- */
 
-static int by_model(const void *a, const void *b)
-{
-    const struct diff_side_asset *const *p = a, *const *q = b;
-    return (*p)->work != (*q)->work ? ((*p)->work < (*q)->work ? -1 : 1) : *p < *q ? -1 : *p > *q;
-}
-
 /* Compares the new plant's assets, model by model, so that each model is parsed only once. */
 static void compare_assets(struct diff *diff, double tolerance_m)
 {
     const struct diff_side *now = &diff->new_side;
-    const struct diff_side_asset **order = mem_array(now->asset_count, sizeof(*order));
+    struct diff_side_asset **order = mem_array(now->asset_count, sizeof(*order));
     for (size_t i = 0; i < now->asset_count; i++)
         order[i] = &now->assets[i];
     qsort(order, now->asset_count, sizeof(*order), by_model);
     for (size_t i = 0; i < now->asset_count; i++)
         compare_asset(diff, order[i], tolerance_m);
     mem_free(order);
+    close_moved(diff);
     for (size_t i = 0; i < diff->old_side.asset_count; i++)
         if (!find_asset(now, diff->old_side.assets[i].id))
             add_asset(diff, (struct diff_asset){ .id = diff->old_side.assets[i].id, .change = DIFF_REMOVED });
@@ -336,7 +383,8 @@ static void compare_tags(struct diff *diff)
         const struct diff_side_tag *tag = &now->tags[i];
         if (*tag->asset && !tag->is_sensor && !find_asset(now, tag->asset))
             orphan(diff, tag->name, tag->asset, mem_printf("asset %s is not in the plant file", tag->asset));
-        if (tag->is_sensor && !diff_side_find_tag(before, tag->name)) {
+        const struct diff_side_tag *was = diff_side_find_tag(before, tag->name);
+        if (tag->is_sensor && (!was || !was->is_sensor)) {
             mem_grow(&diff->tags_added, &diff->added_room, diff->added_count + 1, sizeof(*diff->tags_added));
             diff->tags_added[diff->added_count++] = tag->name;
         }

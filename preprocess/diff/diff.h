@@ -7,13 +7,15 @@
 
 #include "preprocess/diff/diff_side.h"
 
-enum diff_change { DIFF_SAME, DIFF_ADDED, DIFF_REMOVED, DIFF_MOVED, DIFF_CHANGED, DIFF_CHANGES };
+/* DIFF_UNKNOWN: a file of the asset cannot be read */
+enum diff_change { DIFF_SAME, DIFF_ADDED, DIFF_REMOVED, DIFF_MOVED, DIFF_CHANGED, DIFF_UNKNOWN, DIFF_CHANGES };
 extern const char *const diff_changes[DIFF_CHANGES];
 
 struct diff_asset {
     const char *id;
     enum diff_change change;
-    /* why an asset counts as removed although the new plant file still lists its id, such as a missing node; NULL: its id was removed */
+    /* why an asset counts as removed although the new plant file still lists its id, such as a missing node, or why its change is
+     * unknown; NULL: there is no such reason */
     char *why;
     double move_m[3]; /* movement of the centre of the asset's bounding box, metres, in the plant frame */
     double moved_m;   /* largest movement of a corner of the asset's bounding box, metres */
@@ -26,6 +28,7 @@ struct diff_asset {
 struct diff_sensor {         /* a tag that is a sensor in both revisions */
     const char *tag, *asset; /* name of the tag, and id of its asset in the new plant */
     const char *old_asset;   /* id of its asset in the old plant if that is another asset; NULL: the same asset */
+    /* moved_m, place_moved_m, distance_m[0]: NaN if the sensor's place in the old revision is unknown */
     double moved_m;          /* distance between the surface points nearest to the sensor in the old and the new revision, metres */
     double place_moved_m;    /* movement of the position given by the tag list or the sensor's node, metres */
     double distance_m[2];    /* distance from the sensor's position to the surface in the old [0] and in the new [1] revision, metres */
@@ -40,7 +43,8 @@ struct diff_orphan {
 };
 
 struct diff {
-    struct diag *diag;
+    struct diag *diag;       /* receives an error for each asset with an unreadable file; belongs to the caller */
+    struct pair_half *moved; /* old revision of the asset from which tags have moved to another asset; NULL: none yet */
     struct diff_side old_side, new_side;
     struct diff_asset *assets;
     struct diff_sensor *sensors;

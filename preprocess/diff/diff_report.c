@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Prints the comparison of two plants (diff_run()) as text and as JSON (REPORT.md). */
 #include <jansson.h>
+#include <math.h>
 #include <stdlib.h>
 
 #include "base/mem.h"
@@ -18,7 +19,7 @@ static void add_number(struct text_table *table, bool shown, int digits, double 
 
 static void add_asset(struct text_table *table, const struct diff_asset *asset)
 {
-    static const char *const marks[DIFF_CHANGES] = { " ", "+", "-", ">", "~" };
+    static const char *const marks[DIFF_CHANGES] = { " ", "+", "-", ">", "~", "?" };
     bool changed = asset->change == DIFF_CHANGED, moved = asset->change == DIFF_MOVED || (changed && asset->moved_m > asset->tolerance_m);
     text_table_add(table, "%s", marks[asset->change]);
     text_table_add(table, "%s", asset->id);
@@ -126,11 +127,14 @@ void diff_text(const struct diff *diff, FILE *out)
     fprintf(out, "\n");
     for (size_t i = 0; i < diff->orphan_count; i++)
         fprintf(out, "! %s: position lost: %s\n", diff->orphans[i].tag, diff->orphans[i].why);
+    char unknown[32] = "";
+    if (counts[DIFF_UNKNOWN])
+        snprintf(unknown, sizeof(unknown), ", %zu unknown", counts[DIFF_UNKNOWN]);
     fprintf(out,
-            "%s > %s: %zu assets added, %zu removed, %zu moved, %zu changed, %zu unchanged; surface of %zu sensors moved; %zu tags lost "
+            "%s > %s: %zu assets added, %zu removed, %zu moved, %zu changed, %zu unchanged%s; surface of %zu sensors moved; %zu tags lost "
             "their position\n",
             diff->old_side.path, diff->new_side.path, counts[DIFF_ADDED], counts[DIFF_REMOVED], counts[DIFF_MOVED], counts[DIFF_CHANGED],
-            counts[DIFF_SAME], sensors, diff->orphan_count);
+            counts[DIFF_SAME], unknown, sensors, diff->orphan_count);
 }
 
 /* --- JSON ---------------------------------------------------------------------------------------------------------------------------- */
@@ -147,11 +151,16 @@ static json_t *asset_json(const struct diff_asset *asset)
     return root;
 }
 
+static json_t *known(double number)
+{
+    return isnan(number) ? json_null() : json_real(number);
+}
+
 static json_t *sensor_json(const struct diff_sensor *sensor)
 {
-    return json_pack("{s:s,s:s,s:s*,s:f,s:f,s:f,s:f,s:f,s:f,s:b}", "tag", sensor->tag, "asset", sensor->asset, "asset_old",
-                     sensor->old_asset, "surface_moved_m", sensor->moved_m, "place_moved_m", sensor->place_moved_m,
-                     "surface_distance_old_m", sensor->distance_m[0], "surface_distance_new_m", sensor->distance_m[1], "limit_m",
+    return json_pack("{s:s,s:s,s:s*,s:o,s:o,s:o,s:f,s:f,s:f,s:b}", "tag", sensor->tag, "asset", sensor->asset, "asset_old",
+                     sensor->old_asset, "surface_moved_m", known(sensor->moved_m), "place_moved_m", known(sensor->place_moved_m),
+                     "surface_distance_old_m", known(sensor->distance_m[0]), "surface_distance_new_m", sensor->distance_m[1], "limit_m",
                      sensor->limit_m, "tolerance_m", sensor->tolerance_m, "moved", sensor->far_moved);
 }
 

@@ -24,6 +24,7 @@ struct diff_side_asset {
     /* key of the asset's prepared file; set only if a folder of prepared files is compared */
     uint64_t key;
     const char *missing; /* why the asset has no prepared file; NULL: it has one */
+    bool reported;       /* an error message has said that the asset's file cannot be read */
 };
 
 struct diff_side {

@@ -229,6 +229,15 @@ CASE(a_tag_that_lost_its_asset_is_an_orphan)
     assert_int_equal(json_array_size(json_object_get(root, "orphans")), 1);
 }
 
+CASE(a_tag_that_gets_its_first_asset_is_added)
+{
+    write_plant(c, "new", OLD_ASSETS, ONE_ROW(""));
+    write_plant(c, "later", OLD_ASSETS, ONE_ROW("SAME"));
+    const json_t *added = json_object_get(compare(c, "$FOLDER/new.yaml $FOLDER/later.yaml", 0), "tags_added");
+    assert_int_equal(json_array_size(added), 1);
+    assert_string_equal(json_string_value(json_array_get(added, 0)), "T-SAME");
+}
+
 CASE(a_tag_on_another_asset_is_shown)
 {
     write_plant(c, "new", OLD_ASSETS, ONE_ROW("MOVED"));
@@ -256,14 +265,39 @@ CASE(an_unreadable_prepared_file_is_an_error_not_a_new_asset)
     prep_case_expect(c, "$FOLDER/old.yaml", 0);
     truncate_first(temp_path(c->folder, "old.prepared"));
     json_t *root = compare(c, "$FOLDER/old.prepared $FOLDER/old.yaml", 1);
-    assert_null(named(root, "assets", "id", "SAME"));
+    assert_non_null(strstr(json_string_value(json_object_get(asset_of(root, "SAME", "unknown"), "why")), "prepared file "));
     assert_int_equal((int)prep_case_number(root, "counts.added"), 0);
+    assert_int_equal((int)prep_case_number(root, "counts.unknown"), 1);
+    assert_true(json_is_null(json_object_get(named(root, "sensors", "tag", "T-SAME"), "surface_moved_m")));
     prep_case_says(&c->err, "old.prepared: error: asset SAME: prepared file ");
     temp_write_text(c->folder, "broken.glb", "no model");
-    /* PLACED has no sensor, so its new file is read only to compare shapes */
-    write_plant(c, "new", ASSET("PLACED", "broken.glb", ""), "");
-    prep_case_expect(c, "--diff $FOLDER/old.yaml $FOLDER/new.yaml", 1);
+    /* SAME has a sensor; PLACED has none, so its new file is read only to compare shapes */
+    write_plant(c, "new", ASSET("SAME", "broken.glb", "") ASSET("PLACED", "broken.glb", ""), ONE_ROW("SAME"));
+    root = compare(c, "$FOLDER/old.yaml $FOLDER/new.yaml", 1);
+    asset_of(root, "SAME", "unknown");
+    asset_of(root, "PLACED", "unknown");
+    assert_int_equal((int)prep_case_number(root, "counts.removed"), 5);
+    assert_int_equal(json_array_size(json_object_get(root, "orphans")), 0);
     prep_case_says(&c->err, "new.yaml: error: asset PLACED: ");
+    prep_case_expect(c, "--diff $FOLDER/old.yaml $FOLDER/new.yaml", 1);
+    prep_case_says(&c->out, "0 unchanged, 2 unknown; ");
+}
+
+/* All tags of an asset with an unreadable file move to another asset. */
+CASE(tags_whose_old_place_is_unknown_are_shown)
+{
+    prep_case_expect(c, "$FOLDER/old.yaml", 0);
+    truncate_first(temp_path(c->folder, "old.prepared"));
+    write_plant(c, "new", ASSET("MOVED", "old.glb", ""),
+                "T-SAME,400001,Float,plc,temperature,MOVED,,10.5,0.5,1\nT-MIDDLE,400003,Float,plc,temperature,MOVED,,10.5,0.5,1\n");
+    json_t *root = compare(c, "$FOLDER/old.prepared $FOLDER/new.yaml", 1);
+    const json_t *sensor = named(root, "sensors", "tag", "T-SAME");
+    assert_string_equal(json_string_value(json_object_get(sensor, "asset_old")), "SAME");
+    assert_true(json_is_null(json_object_get(sensor, "surface_moved_m")));
+    assert_float_equal(prep_case_number(sensor, "surface_distance_new_m"), 0, 1e-5);
+    assert_non_null(named(root, "sensors", "tag", "T-MIDDLE"));
+    const char *error = strstr(c->err.at, "error: asset SAME");
+    assert_true(error && !strstr(error + 1, "error: asset SAME"));
 }
 
 /* Coarser levels of detail have vertices that lie off the original surface. These must not be reported as a change. */
