@@ -264,6 +264,8 @@ TEST(a_range_too_small_for_a_logarithmic_scale_is_refused)
     assert_true(view.color_scale.log);
     view = changed(view, "{\"type\":\"params\",\"seq\":3,\"range\":[1e-12,1e-10]}");
     assert_true(view.range_max == 1e-10);
+    view = changed(view, "{\"type\":\"params\",\"seq\":4,\"range\":[0,1e-18],\"scale\":\"linear\"}");
+    assert_true(view.range_max == 1e-18);
 }
 
 TEST(overrides_of_sensors_are_merged)
@@ -584,6 +586,7 @@ TEST(a_refused_number_is_told_why)
         { "\"range\":[1e-300,1e300]", "range: a number from -1e+12 to 1e+12 is expected" },
         { "\"range\":[-1e13,0]", "range: a number from -1e+12 to 1e+12 is expected" },
         { "\"range\":[20,20]", "range: the range must begin below its end, by a millionth of its larger end or more" },
+        { "\"range\":[0,1e-40]", "range: the range must begin below its end, by a millionth of its larger end or more" },
         { "\"range\":[20]", "range: the range must begin below its end, by a millionth of its larger end or more" },
         { "\"range\":[10000000,10000000.000000002],\"isolines\":1e-10",
           "range: the range must begin below its end, by a millionth of its larger end or more" },

@@ -437,7 +437,12 @@ CASE(wrong_types_are_named)
           { "plant.yaml", 3, 92, "scale: a logarithmic scale needs min of at least 1e-18, found 0" });
     load_with(f, 3, "groups: [{ id: g, unit: K, min: 10000000, max: 10000000.000000002 }]");
     FOUND(f, { "plant.yaml", 3, 33,
-               "min: expected at least 1e-06 times the larger of min and max between them, found 10000000 to 10000000.000000002" });
+               "min, max: the range from 10000000 to 10000000.000000002 is too narrow: max must exceed min by at least 1e-18, and by at "
+               "least 1e-06 of the larger of their absolute values" });
+    load_with(f, 3, "groups: [{ id: g, unit: K, min: 0, max: 1e-40 }]");
+    FOUND(f, { "plant.yaml", 3, 33,
+               "min, max: the range from 0 to 9.9999999999999993e-41 is too narrow: max must exceed min by at least 1e-18, and by at least "
+               "1e-06 of the larger of their absolute values" });
 }
 
 CASE(bad_choices_list_the_allowed)

@@ -342,8 +342,9 @@ static void read_group(struct yaml_reader *reader, yaml_node_t *node, struct pla
         yaml_error(reader, yaml_map_place(&map, "min"), "min: expected less than max, which is %.9g, found %.9g", group->max, group->min);
     else if (yaml_map_good(&map, "min") && yaml_map_good(&map, "max") && !plant_range_is_wide(group->min, group->max))
         yaml_error(reader, yaml_map_place(&map, "min"),
-                   "min: expected at least %g times the larger of min and max between them, found %.17g to %.17g", PLANT_LEAST_RANGE,
-                   group->min, group->max);
+                   "min, max: the range from %.17g to %.17g is too narrow: max must exceed min by at least %g, and by at least %g of the "
+                   "larger of their absolute values",
+                   group->min, group->max, PLANT_LEAST_WIDTH, PLANT_LEAST_RANGE);
     if (group->log && yaml_map_good(&map, "min") && !(group->min >= PLANT_LEAST_LOG))
         yaml_error(reader, yaml_map_place(&map, "scale"), "scale: a logarithmic scale needs min of at least %g, found %.9g",
                    PLANT_LEAST_LOG, group->min);
