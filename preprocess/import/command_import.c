@@ -73,15 +73,6 @@ static void print_usage(FILE *out)
           out);
 }
 
-static void print_lines(const char *path, const char *lines)
-{
-    for (size_t length; *lines; lines += length + (lines[length] == '\n')) {
-        length = strcspn(lines, "\n");
-        if (length > 0)
-            printf("%s: %.*s\n", path, (int)length, lines);
-    }
-}
-
 /* Reads the outline (nodes, sizes) of a converted model, leaving out triangles of nodes without area, because plantcast-prep
  * rejects such nodes. said: output of the reader that converted the model. Returns false with the reason in why; there is then
  * no outline to free. Rejects a model without triangles, because it would give a plant without assets. */
@@ -112,6 +103,10 @@ static void convert(struct import_command *import, const char *path)
     struct text said = { 0 };
     bool good = conversion_run(path, glb, import->work.path, &import->conversion, &said, why) &&
                 read_outline(&model->outline, glb, said.at ? said.at : "", why);
+    struct text plain = { 0 };
+    const char *slash = strrchr(path, '/');
+    json_t *findings = findings_read(slash ? slash + 1 : path, said.at ? said.at : "", good ? NULL : why, &plain);
+    json_array_append_new(import->findings, findings);
     if (good) {
         model->file = mem_printf("%s.glb", stem);
         if (format->reader == FORMAT_GLTF) {
@@ -120,8 +115,9 @@ static void convert(struct import_command *import, const char *path)
         }
         model->item_level = format->reader == FORMAT_RVM ? RVM_ITEM_LEVEL : 0;
         struct text summary = { 0 };
-        model_outline_summary(&model->outline, &summary);
-        print_lines(path, summary.at);
+        model_outline_summary(&model->outline, format->unitless ? findings_guessed_m(findings) : 0, &summary);
+        findings_print(path, summary.at, stdout);
+        findings_print(path, plain.at, stdout);
         text_finish(&summary);
         import->count++;
     } else {
@@ -131,12 +127,6 @@ static void convert(struct import_command *import, const char *path)
         import->unread++;
         import->interrupted = work_folder_interrupted() || !strcmp(why, "interrupted");
     }
-    struct text plain = { 0 };
-    const char *slash = strrchr(path, '/');
-    json_array_append_new(import->findings,
-                          findings_read(slash ? slash + 1 : path, said.at ? said.at : "", good ? NULL : why, &plain));
-    if (good)
-        print_lines(path, plain.at ? plain.at : "");
     text_finish(&plain);
     text_finish(&said);
     mem_free(stem);

@@ -5,6 +5,7 @@
 
 #include "base/mem.h"
 #include "preprocess/import/commands.h"
+#include "preprocess/import/findings.h"
 #include "preprocess/import/formats.h"
 #include "preprocess/import/node_list.h"
 #include "preprocess/import/options.h"
@@ -18,6 +19,7 @@ static void print_usage(FILE *out)
           "Prints for each node its index, triangle count, size, centre (Z up), path and properties.\n"
           "Triangle count, size and centre include the node's children.\n"
           "The first lines of the output state the node count, the model's size and its distance from the origin.\n"
+          "Guessed units and axes, lost parts and errors are printed to standard error.\n"
           "A node without a name is listed under the name of its mesh, or else under its index.\n"
           "A plant file can also select a node by its index (nodes: \"#12\").\n"
           "  --grep RE         list only nodes whose path or properties match RE (extended, ignoring case)\n"
@@ -29,8 +31,8 @@ static void print_usage(FILE *out)
 }
 
 /* Reads the outline (nodes, sizes) of a model. glTF is read directly; other formats are first converted to GLB, as by
- * `plantcast import`. */
-static bool read_model(const char *path, const struct conversion_params *params, struct model_outline *outline)
+ * `plantcast import`. *guessed_m receives the length in metres of a unit that the reader assumed, or 0. */
+static bool read_model(const char *path, const struct conversion_params *params, struct model_outline *outline, double *guessed_m)
 {
     const struct import_format *format = import_format_of(path);
     char why[CONVERSION_WHY_BYTES] = "";
@@ -52,6 +54,13 @@ static bool read_model(const char *path, const struct conversion_params *params,
     }
     if (!good)
         fprintf(stderr, "plantcast nodes: %s: %s\n", path, why);
+    struct text plain = { 0 };
+    json_t *findings = findings_read(path, said.at ? said.at : "", NULL, &plain);
+    *guessed_m = format && format->unitless ? findings_guessed_m(findings) : 0;
+    if (good)
+        findings_print(path, plain.at, stderr);
+    json_decref(findings);
+    text_finish(&plain);
     text_finish(&said);
     return good;
 }
@@ -95,7 +104,7 @@ int command_nodes(int argc, char **argv)
         print_usage(stderr);
         return 2;
     }
-    if (!read_model(argv[optind], &params, &outline))
+    if (!read_model(argv[optind], &params, &outline, &list.guessed_m))
         return 1;
     size_t found = node_list_print(&outline, &list, stdout);
     model_outline_finish(&outline);

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/text/json_text.h"
 #include "base/text/utf8.h"
 
 enum { MAX_FIELDS = 6, MAX_LISTED = 20000 };
@@ -98,6 +99,21 @@ json_t *findings_read(const char *file, const char *said, const char *failed, st
     mem_free(name);
     mem_free(why);
     return model;
+}
+
+void findings_print(const char *path, const char *lines, FILE *out)
+{
+    for (size_t length; lines && *lines; lines += length + (lines[length] == '\n')) {
+        length = strcspn(lines, "\n");
+        if (length > 0)
+            fprintf(out, "%s: %.*s\n", path, (int)length, lines);
+    }
+}
+
+double findings_guessed_m(const json_t *findings)
+{
+    const char *unit = json_member_text(json_object_get(findings, "unit"), "taken");
+    return !unit ? 0 : !strcmp(unit, "m") ? 1 : !strcmp(unit, "mm") ? 1e-3 : 0;
 }
 
 void findings_flat_nodes(const char *said, bool *flat, size_t count)

@@ -7,6 +7,7 @@
 #ifndef PREPROCESS_IMPORT_FINDINGS_H
 #define PREPROCESS_IMPORT_FINDINGS_H
 #include <jansson.h>
+#include <stdio.h>
 
 #include "base/text/text.h"
 
@@ -14,6 +15,10 @@
  * text}], left_out: [text], unit: {taken, length} or null, failed: text or null}. said: the reader's output; failed: why the
  * model was not imported, or NULL. Appends the lines printed for users to `plain`. */
 json_t *findings_read(const char *file, const char *said, const char *failed, struct text *plain);
+/* Prints lines, such as findings_read()'s `plain`, each after the path of their model. lines: NULL: prints nothing. */
+void findings_print(const char *path, const char *lines, FILE *out);
+/* Returns the length in metres of the unit that the reader assumed (m or mm), from the result of findings_read(); 0: none. */
+double findings_guessed_m(const json_t *findings);
 /* Sets flat[N] to true for each node number N below `count` that the reader's output lists as "flat". */
 void findings_flat_nodes(const char *said, bool *flat, size_t count);
 

@@ -126,17 +126,16 @@ bool model_outline_extent(const struct model_box *box, double size[3], double ce
     return true;
 }
 
-/* Returns whether plantcast-import wrote the model. Its unit is then certainly metres: the source file gave its unit, or the
- * import has printed its guess. */
+/* Returns whether plantcast-import wrote the model. Its unit is then certainly metres. */
 static bool knows_units(const struct model_outline *outline)
 {
     const char *generator = json_string_value(json_object_get(json_object_get(outline->header.json, "asset"), "generator"));
     return generator && !strncmp(generator, "plantcast-import", strlen("plantcast-import"));
 }
 
-void model_outline_summary(const struct model_outline *outline, struct text *out)
+void model_outline_summary(const struct model_outline *outline, double guessed_m, struct text *out)
 {
-    const struct plant_asset metres = { .unit_m = 1 };
+    const struct plant_asset asset = { .unit_m = guessed_m > 0 ? guessed_m : 1 };
     double size[3], centre[3];
     char why[SIZE_WHY_BYTES], nodes[32];
     snprintf(nodes, sizeof(nodes), "%s", text_table_number(outline->header.count).text);
@@ -150,6 +149,6 @@ void model_outline_summary(const struct model_outline *outline, struct text *out
              vec_length(centre));
     if (outline->header.partial)
         text_add(out, " (the extent of some nodes is unknown: instances, or positions without min and max)");
-    if (!knows_units(outline) && asset_size_doubtful(&metres, size, 0, why))
+    if ((guessed_m > 0 || !knows_units(outline)) && asset_size_doubtful(&asset, size, 0, why))
         text_add(out, "\n%s", why);
 }

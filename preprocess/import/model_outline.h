@@ -47,8 +47,8 @@ void model_outline_path(const struct model_outline *outline, size_t node, struct
 
 /* Appends a summary of the model without a line end: "4,679 nodes, 592 unnamed; 52,830 triangles; 21.5 x 22.6 x 3.9 m if the
  * unit is metres and Y is up; 310 m from the origin". If the size is implausible for a plant, adds a hint that the units may be
- * wrong. */
-void model_outline_summary(const struct model_outline *outline, struct text *out);
+ * wrong. guessed_m: length in metres of the unit that the import assumed for the source file; 0: the import assumed none. */
+void model_outline_summary(const struct model_outline *outline, double guessed_m, struct text *out);
 
 /* Converts a model's bounding box to size and centre in plant axes (Z up: the last number is the height). Returns false for an
  * empty box. */

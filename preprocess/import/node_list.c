@@ -83,12 +83,12 @@ static void print_line(const struct model_outline *outline, size_t i, const char
             properties->length ? properties->at : "");
 }
 
-static void print_head(const struct model_outline *outline, bool json, FILE *out)
+static void print_head(const struct model_outline *outline, const struct node_list_params *params, FILE *out)
 {
     struct text summary = { 0 };
     double size[3], centre[3];
-    model_outline_summary(outline, &summary);
-    if (!json) {
+    model_outline_summary(outline, params->guessed_m, &summary);
+    if (!params->json) {
         fprintf(out, "%s\n%-7s %10s  %-26s  %-28s  %s\n", summary.at, "number", "triangles", "size m", "centre m (z up)",
                 "path | properties");
     } else {
@@ -120,7 +120,7 @@ static const char *own_part(const struct model_outline *outline, size_t i, const
 size_t node_list_print(const struct model_outline *outline, const struct node_list_params *params, FILE *out)
 {
     size_t count = 0;
-    print_head(outline, params->json, out);
+    print_head(outline, params, out);
     for (size_t i = 0; i < outline->header.count; i++) {
         struct text path = { 0 }, properties = { 0 };
         if (params->levels && outline->nodes[i].depth >= params->levels)

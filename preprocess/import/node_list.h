@@ -11,6 +11,7 @@ struct node_list_params {
     const regex_t *grep; /* regular expression: print only nodes whose path or one of whose properties matches; NULL: print all nodes */
     int levels;          /* number of tree levels to print; 0: print a table of paths */
     bool json;
+    double guessed_m; /* as for model_outline_summary() */
 };
 
 /* Prints one line per node of a model. Returns the number of nodes printed. */

@@ -56,6 +56,16 @@ test('units and up axis are guessed and reported, or taken from the options', { 
     assert.match(said.stdout,
         /states no unit: assuming mm, which makes the model's length of 2000 equal to 2 m;.*set --units/);
     assert.match(said.stdout, /states no up axis: assuming z/);
+    assert.doesNotMatch(said.stdout, /check its units/);
+    const nodes = plantcast('nodes', join(folder, 'a.stl'), '--json');
+    assert.match(nodes.stderr, /a\.stl: the file states no unit: assuming mm, which makes /);
+    assert.match(nodes.stderr, /a\.stl: the file states no up axis: assuming z/);
+    assert.equal(JSON.parse(nodes.stdout).triangles, 8);
+    for (const [scale, size] of [[0.01, '0.02 x 0.01 x 0.005 m'], [2e5, '400 x 200 x 100 m']]) {
+        writeFileSync(join(folder, 'c.stl'), stl(scale));
+        for (const args of [['import', '-o', join(folder, `${scale}`)], ['nodes']])
+            assert.match(plantcast(...args, join(folder, 'c.stl')).stdout, new RegExp(`its size is ${size}: check its units$`, 'm'));
+    }
     const given = boxed(folder, 'b.stl', stl(10), '--units', 'ft', '--up', 'y');
     assert.ok(near(given.size, [6.096, 1.524, 3.048]), JSON.stringify(given.size));
     writeFileSync(join(folder, 'a.dae'), dae());
