@@ -18,6 +18,7 @@
 
 #include "base/files/atomic_file.h"
 #include "base/mem.h"
+#include "base/text/utf8.h"
 #include "plant/parse/csv.h"
 #include "plant/plant_folder.h"
 #include "plant/sources/mqtt_address.h"
@@ -34,7 +35,7 @@ struct loop_checks {
     char *folder, *path;
     struct loop_check *at; /* [tag]: newest loop check */
     uint64_t *numbers;     /* [tag]: sequence number (loop_checks_number()) of the tag's newest loop check */
-    uint64_t number;
+    uint64_t number, number_of_all;
     bool begun;
     /* [tag]: true if pictures mark the tag as unproven, because it has no passed loop check (test with a value forced at the
        transmitter); read by the render threads */
@@ -97,11 +98,20 @@ static bool is_current(const struct plant *plant, int tag, uint64_t fingerprint)
     return fingerprint == hash_settings(plant, tag, true) || fingerprint == hash_settings(plant, tag, false);
 }
 
+/* Removes the incomplete characters that shortened texts may end in, because JSON and the file must not contain them. */
+static void complete_texts(struct loop_check *check)
+{
+    utf8_drop_invalid(check->unit);
+    utf8_drop_invalid(check->who);
+    utf8_drop_invalid(check->remark);
+}
+
 /* Stores the tag's present unit and fingerprint in a loop check. */
 static void stamp(const struct plant *plant, int tag, struct loop_check *check)
 {
     snprintf(check->unit, sizeof(check->unit), "%s", plant->tags[tag].unit ? plant->tags[tag].unit : "");
     check->fingerprint = loop_check_fingerprint(plant, tag);
+    complete_texts(check);
 }
 
 /* --- the file ------------------------------------------------------------------------------------------------------------------ */
@@ -184,18 +194,14 @@ static void read_row(struct loop_checks *loop_checks, const struct csv *csv)
     snprintf(check->unit, sizeof(check->unit), "%s", text_cell_read(csv_text(csv, UNIT)));
     snprintf(check->who, sizeof(check->who), "%s", text_cell_read(csv_text(csv, BY)));
     snprintf(check->remark, sizeof(check->remark), "%s", text_cell_read(csv_text(csv, REMARK)));
-}
-
-static void mark_tag(struct loop_checks *loop_checks, size_t tag)
-{
-    atomic_store(&loop_checks->unproven[tag],
-                 loop_checks->begun && loop_checks->plant->tags[tag].source >= 0 && loop_checks->at[tag].state != LOOP_CHECK_PASSED);
+    complete_texts(check);
 }
 
 static void mark_unproven(struct loop_checks *loop_checks)
 {
     for (size_t i = 0; i < loop_checks->plant->tag_count; i++)
-        mark_tag(loop_checks, i);
+        atomic_store(&loop_checks->unproven[i],
+                     loop_checks->begun && loop_checks->plant->tags[i].source >= 0 && loop_checks->at[i].state != LOOP_CHECK_PASSED);
 }
 
 static void read_all(struct loop_checks *loop_checks)
@@ -338,14 +344,19 @@ void loop_checks_mirror(struct loop_checks *loop_checks, bool all, bool begun)
         forget_all(loop_checks);
     loop_checks->begun = begun;
     loop_checks->number++;
-    mark_unproven(loop_checks);
+    if (all)
+        loop_checks->number_of_all = loop_checks->number;
 }
 
 void loop_checks_mirror_tag(struct loop_checks *loop_checks, int tag, const struct loop_check *check)
 {
     loop_checks->at[tag] = *check;
     loop_checks->numbers[tag] = loop_checks->number;
-    mark_tag(loop_checks, (size_t)tag);
+}
+
+void loop_checks_mirror_end(struct loop_checks *loop_checks)
+{
+    mark_unproven(loop_checks);
 }
 
 /* --- queries
@@ -374,6 +385,11 @@ bool loop_checks_unproven(const struct loop_checks *loop_checks, int tag)
 uint64_t loop_checks_number(const struct loop_checks *loop_checks)
 {
     return loop_checks->number;
+}
+
+uint64_t loop_checks_number_of_all(const struct loop_checks *loop_checks)
+{
+    return loop_checks->number_of_all;
 }
 
 uint64_t loop_checks_number_of(const struct loop_checks *loop_checks, int tag)

@@ -49,12 +49,16 @@ bool loop_checks_recorded(const struct loop_checks *loop_checks);
 void loop_checks_mirror(struct loop_checks *loop_checks, bool all, bool begun);
 /* Stores one of the core's checks, after loop_checks_mirror(). */
 void loop_checks_mirror_tag(struct loop_checks *loop_checks, int tag, const struct loop_check *check);
+/* Ends the storing that loop_checks_mirror() began: only now does loop_checks_unproven() return the new state of all tags. */
+void loop_checks_mirror_end(struct loop_checks *loop_checks);
 /* Returns the newest loop check recorded for a tag. */
 const struct loop_check *loop_checks_of(const struct loop_checks *loop_checks, int tag);
 /* Returns true if any tag of the plant has been checked. From the first check on, all tags that have not passed are marked as unproven. */
 bool loop_checks_begun(const struct loop_checks *loop_checks);
 /* Returns a sequence number that increases with each recorded loop check. */
 uint64_t loop_checks_number(const struct loop_checks *loop_checks);
+/* Returns the sequence number of the newest loop_checks_mirror() with `all`; 0: none. */
+uint64_t loop_checks_number_of_all(const struct loop_checks *loop_checks);
 /* Returns the sequence number of the tag's newest loop check; 0: it was recorded before the daemon started. */
 uint64_t loop_checks_number_of(const struct loop_checks *loop_checks, int tag);
 /* Appends CSV: a header line, then the newest check of every tag that has a source. */

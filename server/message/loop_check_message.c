@@ -63,6 +63,7 @@ char *loop_check_do(struct loop_checks *loop_checks, const struct plant *plant, 
 json_t *loop_checks_message(const struct loop_checks *loop_checks, const struct plant *plant, uint64_t since, bool all)
 {
     json_t *list = json_array();
+    all = all || since < loop_checks_number_of_all(loop_checks);
     for (size_t i = 0; i < plant->tag_count; i++) {
         const struct loop_check *check = loop_checks_of(loop_checks, (int)i);
         if (check->state == LOOP_CHECK_NONE || (!all && loop_checks_number_of(loop_checks, (int)i) <= since))
@@ -70,7 +71,7 @@ json_t *loop_checks_message(const struct loop_checks *loop_checks, const struct 
         json_t *row =
             json_pack("[i,s,I,o,o,o,o,o]", (int)i, loop_check_state_names[check->state], (json_int_t)check->time_us, number(check->value),
                       number(check->expected), number(check->tolerance), json_string(check->who), json_string(check->remark));
-        json_array_append_new(list, row ? row : json_array());
+        json_array_append_new(list, row); /* no-op if the row is NULL, because memory is short */
     }
     return json_pack("{s:s,s:b,s:b,s:o}", "type", "proofs", "all", all, "begun", loop_checks_begun(loop_checks), "tags", list);
 }
@@ -108,14 +109,17 @@ static int read_check(const json_t *row, size_t tag_count, struct loop_check *ch
 bool loop_checks_take(struct loop_checks *loop_checks, const struct plant *plant, const json_t *message)
 {
     const json_t *list = json_object_get(message, "tags");
-    bool good = json_is_array(list);
+    struct loop_check check;
+    if (!json_is_array(list))
+        return false;
+    for (size_t i = 0; i < json_array_size(list); i++)
+        if (read_check(json_array_get(list, i), plant->tag_count, &check) < 0)
+            return false;
     loop_checks_mirror(loop_checks, json_is_true(json_object_get(message, "all")), json_is_true(json_object_get(message, "begun")));
-    for (size_t i = 0; good && i < json_array_size(list); i++) {
-        struct loop_check check;
+    for (size_t i = 0; i < json_array_size(list); i++) {
         int tag = read_check(json_array_get(list, i), plant->tag_count, &check);
-        good = tag >= 0;
-        if (good)
-            loop_checks_mirror_tag(loop_checks, tag, &check);
+        loop_checks_mirror_tag(loop_checks, tag, &check);
     }
-    return good;
+    loop_checks_mirror_end(loop_checks);
+    return true;
 }

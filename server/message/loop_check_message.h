@@ -14,9 +14,9 @@ bool loop_check_parse(const struct plant *plant, const json_t *o, struct message
 char *loop_check_do(struct loop_checks *loop_checks, const struct plant *plant, const struct snapshot *now, const struct message *message,
                     const char *who);
 /* Returns the message `proofs`: the newest loop check of each tag; all false: only checks with sequence numbers
-   (loop_checks_number()) above `since`. The caller owns it. */
+   (loop_checks_number()) above `since`, unless the core has replaced all checks since then. The caller owns it. */
 json_t *loop_checks_message(const struct loop_checks *loop_checks, const struct plant *plant, uint64_t since, bool all);
-/* Stores the checks of a core's message `proofs`. Returns false if the message is invalid. */
+/* Stores the checks of a core's message `proofs`. If the message is invalid, returns false and changes nothing. */
 bool loop_checks_take(struct loop_checks *loop_checks, const struct plant *plant, const json_t *message);
 /* Returns loop_checks_message() as text. Free with mem_free(). */
 char *loop_checks_text(const struct loop_checks *loop_checks, const struct plant *plant, uint64_t since, bool all);

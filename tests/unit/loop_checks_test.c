@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "message/loop_check_message.h"
 #include "tests/support/plant_by_hand.h"
 
 enum { TAGS = 3, COMPUTED = 2, NOBODY = 65534 };
@@ -228,4 +229,83 @@ TEST_ON(struct loop_checks_fixture *f, test_a_check_keeps_its_unit_and_fingerpri
         assert_non_null(strstr(text->at, fingerprint));
         open_again(f);
     }
+}
+
+static void mirror(struct loop_checks_fixture *f, struct loop_checks *mirror)
+{
+    json_t *message = loop_checks_message(f->loop_checks, f->plant, 0, true);
+    assert_true(loop_checks_take(mirror, f->plant, message));
+    json_decref(message);
+}
+
+/* Returns whether a message contains all checks, and asserts how many. */
+static bool contains_all(const struct loop_checks_fixture *f, const struct loop_checks *loop_checks, uint64_t since, size_t count)
+{
+    json_t *message = loop_checks_message(loop_checks, f->plant, since, false);
+    bool all = json_is_true(json_object_get(message, "all"));
+    assert_int_equal(json_array_size(json_object_get(message, "tags")), count);
+    json_decref(message);
+    return all;
+}
+
+/* After the core's records were moved away, pages at a renderer must forget the checks too. */
+TEST_ON(struct loop_checks_fixture *f, test_clients_of_a_mirror_forget_discarded_checks, set_up, tear_down)
+{
+    struct loop_checks *copy = loop_checks_open(f->log, f->plant, NULL, NULL);
+    assert_int_equal(loop_checks_add(f->loop_checks, 0, &passed), REFUSAL_NONE);
+    mirror(f, copy);
+    uint64_t sent = loop_checks_number(copy);
+    assert_true(contains_all(f, copy, 0, 1));
+    assert_false(contains_all(f, copy, sent, 0));
+    assert_true(loop_checks_unproven(copy, 1));
+    char *path = test_printf("%s/" LOOP_CHECKS_FILE, f->folder);
+    assert_int_equal(unlink(path), 0);
+    open_again(f);
+    mirror(f, copy);
+    assert_true(contains_all(f, copy, sent, 0));
+    assert_false(loop_checks_begun(copy) || loop_checks_unproven(copy, 1));
+    loop_checks_close(&copy);
+}
+
+TEST_ON(struct loop_checks_fixture *f, test_an_invalid_message_of_the_core_changes_nothing, set_up, tear_down)
+{
+    static const char *const wrong[] = { "{}", "{\"all\":true,\"begun\":true,\"tags\":[[1,\"pass\",5,1,1,1,\"Kim\",\"\"],[]]}",
+                                         "{\"all\":true,\"begun\":true,\"tags\":[[3,\"pass\",5,1,1,1,\"Kim\",\"\"]]}" };
+    struct loop_checks *copy = loop_checks_open(f->log, f->plant, NULL, NULL);
+    assert_int_equal(loop_checks_add(f->loop_checks, 0, &passed), REFUSAL_NONE);
+    mirror(f, copy);
+    for (size_t i = 0; i < sizeof(wrong) / sizeof(wrong[0]); i++) {
+        json_t *message = json_loads(wrong[i], 0, NULL);
+        assert_false(loop_checks_take(copy, f->plant, message));
+        json_decref(message);
+        assert_true(!loop_checks_unproven(copy, 0) && loop_checks_unproven(copy, 1));
+    }
+    loop_checks_close(&copy);
+}
+
+/* A text that is too long never ends inside a character: JSON could not contain it. */
+TEST_ON(struct loop_checks_fixture *f, test_long_texts_end_with_a_whole_character, set_up, tear_down)
+{
+    enum { HANGUL = 21, TOO_LONG = LOOP_CHECK_REMARK_BYTES - 2 };
+    struct text unit = { 0 }, row = { 0 };
+    text_add(&unit, "a");
+    for (int i = 0; i < HANGUL; i++)
+        text_add(&unit, "도");
+    f->plant->tags[0].unit = mem_strdup(unit.at);
+    assert_int_equal(loop_checks_add(f->loop_checks, 0, &passed), REFUSAL_NONE);
+    text_add(&row, "2023-11-14T22:13:20Z,\"TI-2\",pass,1,\"\",1,1,\"Kim\",\"%0*dé\",%016" PRIx64 "\n", TOO_LONG, 0,
+             loop_check_fingerprint(f->plant, 1));
+    char *path = test_printf("%s/" LOOP_CHECKS_FILE, f->folder);
+    FILE *file = fopen(path, "ab");
+    assert_true(fputs(row.at, file) >= 0 && fclose(file) == 0);
+    open_again(f);
+    assert_int_equal(strlen(loop_checks_of(f->loop_checks, 0)->unit), unit.length - strlen("도"));
+    assert_int_equal(strlen(loop_checks_of(f->loop_checks, 1)->remark), TOO_LONG);
+    struct loop_checks *copy = loop_checks_open(f->log, f->plant, NULL, NULL);
+    mirror(f, copy);
+    expect_unproven(f, false, false);
+    assert_false(loop_checks_unproven(copy, 0) || loop_checks_unproven(copy, 1));
+    loop_checks_close(&copy);
+    text_finish(&unit);
+    text_finish(&row);
 }
