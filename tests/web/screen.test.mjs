@@ -319,6 +319,9 @@ test('a view with every parameter is read back from the address unchanged', () =
     for (const none of [[], null]) // the toolbar sets null
         assert.equal(writeAddress({ params: { isolines: none }, own: { isolines: [50] } }), '#isolines=none');
     assert.deepEqual(readAddress('#isolines=none').params, { isolines: [] });
+    assert.equal(writeAddress({ params: { reach_m: null }, own: { reach_m: 5 } }), '#reach=none');
+    assert.equal(writeAddress({ params: { reach_m: null }, own: { reach_m: null } }), '');
+    assert.deepEqual(readAddress('#reach=none').params, { reach_m: null });
     assert.deepEqual(readAddress('#hide=&ghost=A,B').params, { hidden: [], ghost: ['A', 'B'] });
     assert.deepEqual(readAddress(writeAddress({ params: { look: 'flat', split: { look: 'flat' } } })).params, { look: 'flat', split: {} });
 });

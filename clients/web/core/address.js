@@ -52,6 +52,8 @@ export function writeAddress({ camera, params: all = {}, tag = null, time = null
         const value = params[PARAMS[name] ?? name];
         if (Number.isFinite(value) && value !== usual && differs(PARAMS[name] ?? name))
             put(name, value);
+        else if (name === 'reach' && value === null && Number.isFinite(own.reach_m))
+            put(name, 'none');
     }
     if (Object.keys(params.sensors ?? {}).length > 0)
         put('sensors', sensorsText(params.sensors));
@@ -127,6 +129,8 @@ export function readAddress(hash) {
         if (value >= 0)
             params[PARAMS[name] ?? name] = value;
     }
+    if (fields.get('reach') === 'none')
+        params.reach_m = null;
     const sensors = readSensors(fields.get('sensors'));
     if (sensors)
         params.sensors = sensors;
