@@ -28,13 +28,41 @@ test('parameters missing from a saved view are those of its group, or of the pla
     assert.ok(camera.eye.every(Number.isFinite), 'without a camera the view uses the home camera');
 });
 
-test('a view\'s colour bands become its group\'s numbers, because the legend draws them before the server answers', () => {
+test('a view has colour bands only if its text has them, because new views have continuous colours', () => {
     const { session } = greeted('engineer'), [group] = session.model.groups;
-    const breaksOf = () => viewOf(session, `group=${group.id}`).params.breaks;
     group.breaks = [20, 50];
-    assert.deepEqual(breaksOf(), [20, 50]);
-    group.breaks = [];
-    assert.equal(breaksOf(), null);
+    assert.equal(viewOf(session, `group=${group.id}`).params.breaks, null);
+    for (const breaks of [null, [20, 50]]) {
+        session.setParams({ group: group.id, breaks });
+        assert.deepEqual(viewOf(session, textOf(session)).params.breaks, breaks);
+        assert.deepEqual(newView(session, group.id).breaks, null);
+    }
+});
+
+test('a view that names no interpolation gets the one that the server selects for its quantity', () => {
+    const { session } = greeted('viewer'), [group] = session.model.groups, { id } = group;
+    const chosen = (text) => viewOf(session, `group=${id}&${text}`).params.interpolation;
+    const cases = [['shepard', ['gp'], 'gp', 'shepard'], ['shepard', undefined, 'shepard', 'shepard'], ['fin', ['fin'], 'fin', 'shepard'],
+        ['fin', ['fin', 'harmonic'], 'fin', 'harmonic']];
+    for (const [interpolation, prepared, uncertainty, operator] of cases) {
+        Object.assign(group, { interpolation, prepared });
+        session.model.plant.show = 'value';
+        assert.deepEqual([chosen(''), chosen('show=uncertainty'), chosen('show=operator'), chosen('show=operator&interpolation=paper')],
+            [interpolation, uncertainty, operator, 'paper']);
+        session.model.plant.show = 'operator';
+        assert.equal(newView(session, id).interpolation, operator, 'the picture of an alarm');
+    }
+});
+
+test('a view without group, colour map or environment has those of a new view, whatever was shown before', () => {
+    const { session } = greeted('viewer'), { model } = session, [first, other] = model.groups;
+    session.setParams({ group: other.id, colormap: 'viridis', environment: 'sky' });
+    const shown = ({ group, colormap, environment }) => [group, colormap, environment];
+    assert.deepEqual(shown(viewOf(session, 'look=flat').params), [first.id, model.colormaps[0].name, 'sky']);
+    model.environments = ['sky', 'hall'];
+    assert.deepEqual(shown(viewOf(session, `group=${other.id}`).params), [other.id, model.colormaps[0].name, 'hall']);
+    assert.deepEqual(shown(newView(session, null)), [other.id, model.colormaps[0].name, 'hall'], 'a tag without group keeps the group');
+    assert.equal(viewOf(session, 'show=difference&baseline=b').params.colormap, 'diverging');
 });
 
 test('a saved view shows the quantity, isolines and directions with which it was saved', () => {
@@ -56,7 +84,6 @@ test('a saved view shows the quantity, isolines and directions with which it was
         const { params: other } = viewOf(session, `group=${group.id}&show=${show}`);
         assert.deepEqual([other.scale, other.breaks], [scale, null], 'scale and breaks of the group are for values');
     }
-    assert.deepEqual(viewOf(session, `group=${group.id}&ramp=10`).params.breaks, null, 'bands of equal width replace the group\'s');
     session.setParams({ look: 'materials' });
     assert.equal(newView(session, group.id).look, 'default', 'a new view shows readings');
     session.model.plant.show = 'operator';
@@ -69,7 +96,6 @@ test('a new view of a group shows readings and all equipment, whatever was shown
     const { group, show, isolate, hidden, clip, split, range } = newView(session, other.id);
     assert.deepEqual([group, show, isolate, hidden, clip, split, range],
         [other.id, 'value', [], session.model.start.hidden, null, null, null]);
-    assert.equal(newView(session, null).group, undefined);
 });
 
 test('a viewer takes the parameters of the field from the saved view', () => {
@@ -90,7 +116,7 @@ test('after a reload or a reconnect, a viewer takes the field\'s parameters from
     const { params, ownParams: own } = session, address = writeAddress({ params, own, named: 'own' });
     assert.match(address, /named=own/);
     assert.deepEqual([readAddress(address).params.strength, readAddress(writeAddress({ params, own })).params.strength], [undefined, 2]);
-    assert.deepEqual([isEngineers('strength=2'), isEngineers('look=flat')], [true, false]);
+    assert.deepEqual(['strength=2', 'reach=none', 'look=flat'].map(isEngineers), [true, true, false]);
 });
 
 test('the list of views is empty after a reload into a plant without views', () => {

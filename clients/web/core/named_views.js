@@ -11,17 +11,32 @@ export const textOf = (session, tag = null) => {
     return addressOf({ camera, params, time: null, ownParams }, tag).slice(1);
 };
 
+// Returns the interpolation that the server selects for a group if a view names none.
+function interpolationOf({ interpolation, prepared = [] }, show) {
+    if (show === 'uncertainty' && prepared.includes('gp'))
+        return 'gp';
+    if (show === 'operator' && interpolation === 'fin')
+        return prepared.includes('harmonic') ? 'harmonic' : 'shepard';
+    return interpolation;
+}
+
+// Returns the group, interpolation, environment and colour map with which the server begins a new view.
+function defaultsOf({ model }, group, show) {
+    const { environments: [sky, panorama = sky], colormaps } = model;
+    return { group: group.id, interpolation: interpolationOf(group, show), environment: panorama,
+        colormap: show === 'difference' ? 'diverging' : colormaps[0].name };
+}
+
 // Returns { camera, params, tag } that turn any state of a session into the saved view. A view without a camera gets the home
 // camera, which shows the whole plant. id: id of the saved view. If the user is no engineer, params contain this id instead of
 // the engineer-only parameters, which the server then takes from the saved view.
 export function viewOf(session, text, id) {
-    const { camera, params, tag } = readAddress(text), group = session.model.group(params.group) ?? session.group;
-    const show = params.show ?? session.model.plant.show ?? 'value';
-    const plain = { ...session.ownOf(group), show, arrows: 'arrows', look: 'default', range: null, ramp_interval: 0,
-        breaks: group.breaks?.length && params.ramp_interval === undefined ? group.breaks : null,
-        split: null, selected: null, clip: null, sensors: null };
-    if (show !== 'value') // isolines, breaks and scale of the group are for values
-        Object.assign(plain, { isolines: [], breaks: null, scale: show === 'blind' ? 'log' : 'linear' });
+    const { model } = session, { camera, params, tag } = readAddress(text), group = model.group(params.group) ?? model.groups[0];
+    const show = params.show ?? model.plant.show ?? 'value';
+    const plain = { ...session.ownOf(group), ...(group ? defaultsOf(session, group, show) : {}), show, arrows: 'arrows', look: 'default',
+        range: null, ramp_interval: 0, breaks: null, split: null, selected: null, clip: null, sensors: null };
+    if (show !== 'value') // isolines and scale of the group are for values
+        Object.assign(plain, { isolines: [], scale: show === 'blind' ? 'log' : 'linear' });
     const all = { ...plain, ...params }, isEngineer = session.role === 'engineer';
     const sent = isEngineer ? all : { ...withoutEngineers(all), ...(id ? { named: id } : {}) };
     const { width, height, pixel_ratio: ratio = 1 } = session.size;
@@ -29,7 +44,10 @@ export function viewOf(session, text, id) {
 }
 
 // Returns the parameters of a new view of a sensor group. group null: the group that is shown.
-export const newView = (session, group) => viewOf(session, group ? `group=${encodeURIComponent(group)}` : '').params;
+export function newView(session, group) {
+    const id = group ?? session.params.group;
+    return viewOf(session, id ? `group=${encodeURIComponent(id)}` : '').params;
+}
 
 // Returns true if a view has engineer-only parameters.
 export function isEngineers(text) {
