@@ -65,6 +65,18 @@ test('a view without group, colour map or environment has those of a new view, w
     assert.equal(viewOf(session, 'show=difference&baseline=b').params.colormap, 'diverging');
 });
 
+test('a viewer\'s new view has no engineer-only parameters of the view before it', () => {
+    const { session, say } = greeted('viewer'), { id } = session.group;
+    const views = [{ id: 'saved', view: 'look=flat' }, { id: 'far', view: 'reach=1', fixed: true },
+        { id: 'lost', view: 'group=x', wrong: 'x', fixed: true }, { id: 'home', view: 'look=flat', fixed: true }];
+    say({ type: 'views', list: views });
+    assert.equal(newView(session, id).named, undefined, 'all parameters have their default values');
+    session.params = { ...session.params, reach_m: 0.1 };
+    assert.deepEqual([newView(session, id).named, newView(session, id).group], ['home', id]);
+    session.role = 'engineer';
+    assert.deepEqual([newView(session, id).named, newView(session, id).reach_m], [undefined, null]);
+});
+
 test('a saved view shows the quantity, isolines and directions with which it was saved', () => {
     const { session } = greeted('engineer'), [group] = session.model.groups;
     group.isolines = [50];

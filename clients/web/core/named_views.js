@@ -43,10 +43,13 @@ export function viewOf(session, text, id) {
     return { camera: camera ?? session.homeIn(width / ratio, height / ratio), params: sent, tag };
 }
 
-// Returns the parameters of a new view of a sensor group. group null: the group that is shown.
+// Returns the parameters of a new view of a sensor group. group null: the group that is shown. Users other than engineers cannot send
+// default values of engineer-only parameters. Such users get these values from a view of the plant file that has default values.
 export function newView(session, group) {
-    const id = group ?? session.params.group;
-    return viewOf(session, id ? `group=${encodeURIComponent(id)}` : '').params;
+    const id = group ?? session.params.group, { params } = viewOf(session, id ? `group=${encodeURIComponent(id)}` : '');
+    const usual = session.role === 'engineer' || engineersOf(session) === null ? null
+        : session.views.find(({ fixed, wrong, view }) => fixed && !wrong && !isEngineers(view));
+    return { ...params, ...(usual ? { named: usual.id } : {}) };
 }
 
 // Returns true if a view has engineer-only parameters.
