@@ -58,7 +58,7 @@ changed: {file} wurde inzwischen von anderen geändert
 kept: es sind schon {count} Vergleichsstände gespeichert; bitte erst einen löschen
 lines: ein Abstand von {step} ergibt mehr als {count} Linien
 numbers: höchstens {count} Zahlen, jede größer als die vorige
-log: eine logarithmische Skala braucht einen Bereich über 0, ab 1e-18
+log: eine logarithmische Skala braucht einen Bereich, der bei 1e-18 oder darüber beginnt
 range: der Bereich muss unter seinem Ende beginnen, um mindestens ein Millionstel des größeren Endes
 between: erwartet wird eine Zahl von {low} bis {high}
 placeless: dieser Sensor hat für diese Messgröße keinen Ort
