@@ -160,6 +160,8 @@ test('an error in one pane does not stop the panes after it; a tag that a pane\'
     await failing;
     const clock = await own.locator('.clock b').textContent();
     await own.waitForFunction((before) => document.querySelector('.clock b').textContent !== before, clock);
+    await own.locator('.pane.alarms > .failure', { hasText: 'out of date' }).waitFor();
+    assert.equal(await own.locator('.failure').count(), 1);
     await own.evaluate(() => globalThis.restore());
     await plant.ask('set PI-1 5');
     await own.waitForFunction(() => !globalThis.wall.session.model.alarms.list().some(({ tag }) => tag.name === 'PI-1'));

@@ -122,8 +122,16 @@ async function look() {
 const lostWords = make('p'), lostSelf = make('p', { class: 'self' }), OPENED = new Date().toLocaleTimeString('en-GB');
 byId('lost').replaceChildren(lostWords, lostSelf);
 
+// Covers a pane that an error has stopped, so that nobody takes its contents for current ones. error null: uncovers the pane.
+function showError({ element }, error) {
+    element.querySelector(':scope > .failure')?.remove();
+    if (error)
+        element.append(make('p', { class: 'failure' }, say('walls.failed')));
+}
+
 // Updates a pane. An error in one pane must not stop the other panes; reports an error once.
 function tickPane(pane, now) {
+    const before = pane.error ?? null;
     try {
         pane.tick(now);
         pane.error = null;
@@ -132,6 +140,8 @@ function tickPane(pane, now) {
             console.error(error);
         pane.error = error.message;
     }
+    if (pane.error !== before)
+        showError(pane, pane.error);
 }
 
 let lostAt = null;

@@ -123,6 +123,7 @@ NW: NW
 [walls]
 untrended: Wartet auf die Werte von {tags}
 untagged: unbekannt
+failed: Fehler: Dieses Feld ist nicht aktuell
 unknown: Die Anlagendatei hat keine Videowand „{id}“. Es gibt: {known}
 display: Videowand „{id}“ hat {count} Bildschirme, aber keinen Bildschirm {n}
 lost: Keine Verbindung zur Anlage seit {time}

@@ -122,6 +122,7 @@ NW: NW
 [walls]
 untrended: Waiting for the values of {tags}
 untagged: no such tag
+failed: Error: this pane is out of date
 unknown: The plant file has no wall '{id}'. Its walls: {known}
 display: Wall '{id}' has {count} displays, but no display {n}
 lost: No connection to the plant since {time}

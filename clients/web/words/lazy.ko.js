@@ -120,6 +120,7 @@ NW: 북서
 [walls]
 untrended: {tags} 값을 기다리는 중
 untagged: 없는 태그
+failed: 오류: 이 영역은 최신 상태가 아닙니다
 unknown: 플랜트 파일에 상황판 '{id}'이(가) 없습니다. 있는 상황판: {known}
 display: 상황판 '{id}'에는 디스플레이가 {count}개 있으며 {n}번은 없습니다
 lost: {time}부터 플랜트와 연결이 끊겼습니다
