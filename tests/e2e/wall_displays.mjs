@@ -163,6 +163,7 @@ test('an error in one pane does not stop the panes after it; a tag that a pane\'
     await own.locator('.pane.alarms > .failure', { hasText: 'out of date' }).waitFor();
     assert.equal(await own.locator('.failure').count(), 1);
     await own.evaluate(() => globalThis.restore());
+    await own.waitForFunction(() => !document.querySelector('.failure'));
     await plant.ask('set PI-1 5');
     await own.waitForFunction(() => !globalThis.wall.session.model.alarms.list().some(({ tag }) => tag.name === 'PI-1'));
     await plant.ask('set PI-1 95');
@@ -178,15 +179,16 @@ test('an error in one pane does not stop the panes after it; a tag that a pane\'
 });
 
 test('a display that cannot read the walls of the plant file tries again', options, async () => {
-    let requests = 0;
-    const arrange = (one) => one.route(/api\/v1\/walls/, (route) => (requests++ === 0 ? route.abort() : route.continue()));
+    let fails = true;
+    const arrange = (one) => one.route(/api\/v1\/walls/, (route) => (fails ? route.abort() : route.continue()));
     const other = await openPage(`${plant.url}wall.html?wall=room&display=2`, { viewport: { width: 960, height: 540 } }, null, arrange);
     await other.page.locator('.wrong').waitFor();
+    fails = false;
     await other.page.locator('.pane.text p', { hasText: 'Clean F-101' }).waitFor();
-    // after another connection, the display says which display it is, even if the request fails again
+    // after another connection, the display says which display it is, even while requests fail again
     const isKnown = () => globalThis.wall.session.walls?.displays.some(({ wall, display }) => wall === 'room' && display === 2);
     await other.page.waitForFunction(isKnown);
-    requests = 0;
+    fails = true;
     const again = () => new Promise((done) => {
         globalThis.wall.session.on('welcome', done);
         globalThis.wall.session.connection.socket.close();
