@@ -5,7 +5,9 @@ import assert from 'node:assert/strict';
 import { mock, test } from 'node:test';
 import { cardPlace } from '../../clients/web/app/cards/card_position.js';
 import { Place } from '../../clients/web/app/cards/place.js';
+import { Remote } from '../../clients/web/app/views/remote.js';
 import { projector } from '../../clients/web/core/camera.js';
+import { Repeater } from '../../clients/web/core/requests.js';
 import { randomNumbers } from './random.mjs';
 
 const random = randomNumbers();
@@ -52,7 +54,7 @@ function placeAt(camera, params = {}) {
         setParams() {}, connection: { send: (message) => sent.push(message) } };
     const picked = { asset: 'E-101', position: [0, 5, 1], value: 1 };
     const place = Object.assign(Object.create(Place.prototype), { session, picked, half: 0, asked: null, isLate: false, element: {},
-        viewport: { pixelOf: (x, y) => [x, y] }, build() {}, show() {}, makeRoom() {} });
+        repeater: new Repeater(), viewport: { pixelOf: (x, y) => [x, y] }, build() {}, show() {}, makeRoom() {} });
     return { place, sent, answer: (value, more = {}) => place.hear({ purpose: 'place', ...picked, value, ...more }) };
 }
 
@@ -121,6 +123,49 @@ test('the card of a point waits for slow answers, and asks for the clicked point
         sent.length = 0;
         after(0);
         assert.deepEqual([sent.length, ...repeats()], [1, 2, 2, 3, 3, 4], 'the waiting time starts again at its first value');
+        place.open(30, 40);
+        answer(3, { purpose: 'anchor' });
+        const lost = sent.slice(4).map(({ x, y }) => [x, y]);
+        assert.deepEqual(lost, [[30, 40], [30, 40]], 'a request that the wheel has replaced is sent again at once');
+        answer(4, { asset: 'E-103' });
+        assert.equal(place.picked.asset, 'E-103');
+    } finally {
+        calls.restore();
+    }
+});
+
+test('a pointer on a wall is sent however slow the answers are', () => {
+    let now = 10000;
+    const { mock: calls } = mock.method(performance, 'now', () => now);
+    const sent = [], camera = { ...LENS, eye: [0, 0, 0], target: [0, 9, 0] }, posted = [];
+    const session = { welcomed: true, picture: { camera }, pickSeq: 0, connection: { send: (message) => sent.push(message) },
+        post: (message) => posted.push(message) };
+    const page = { pointed: { x: 1, y: 2 } }, pane = { wall: 'room', display: 1, area: 'main' };
+    const remote = Object.create(Remote.prototype, { chosen: { value: pane } });
+    Object.assign(remote, { session, page, pointing: true, seenSeq: 0, repeater: new Repeater(), desk: { value: '' },
+        viewport: { pixelOf: (x, y) => [x, y] } });
+    // Each request is answered 5 s after it was sent. Returns the number of positions sent to the wall in 60 s.
+    const pointsIn60s = () => {
+        const answers = [];
+        for (const end = now + 60000; now < end; now += 250) {
+            for (; answers[0]?.at <= now; answers.shift()) {
+                if (answers[0].seq === session.pickSeq) // the session ignores answers to earlier requests
+                    remote.onPicked({ seq: answers[0].seq, purpose: 'point', asset: 'E-101', position: [0, 5, 1] });
+            }
+            page.pointed.x += 1;
+            remote.ask();
+            answers.push(...sent.splice(0).map(({ seq }) => ({ seq, at: now + 5000 })));
+        }
+        return posted.length;
+    };
+    try {
+        assert.ok(pointsIn60s() >= 4, `${posted.length} positions`);
+        remote.onPicked({ seq: session.pickSeq, asset: null });
+        session.pickSeq++; // the user clicks
+        remote.ask();
+        now += 1000;
+        remote.ask();
+        assert.equal(sent.length, 0, 'waits for the answer to the click');
     } finally {
         calls.restore();
     }

@@ -4,6 +4,7 @@
 import assert from 'node:assert/strict';
 import { mock, test } from 'node:test';
 import { Hands } from '../../clients/web/app/xr/hands.js';
+import { Repeater } from '../../clients/web/core/requests.js';
 import { projector } from '../../clients/web/core/camera.js';
 import { clipOf, eyeMatrix, eyeOf, floorHit, headCamera, hitOf, isApart, panelHit, pointOf, rigAt, rigFor, standAt, wideView }
     from '../../clients/web/core/headset_views.js';
@@ -181,7 +182,7 @@ test('the card repeats its request if there is no answer, or if another module\'
     const sent = [], session = { welcomed: true, picture: {}, params: {}, pickSeq: 0, size: { width: 800, height: 600 },
         connection: { send: ({ seq }) => sent.push(seq) } };
     const hands = Object.assign(Object.create(Hands.prototype), { headset: { session, shown: { camera: CAMERA }, rig: { axes: [0, UP] } },
-        asked: null, askedAt: 0, card: { at: [0, 5, 1], picked: { asset: 'E-101', value: 1 } } });
+        asked: null, askedAt: 0, repeater: new Repeater(), card: { at: [0, 5, 1], picked: { asset: 'E-101', value: 1 } } });
     const after = (ms) => {
         now += ms;
         hands.ask();

@@ -2,13 +2,15 @@
 // How the page shows recorded history: lines with gaps and spikes in charts, alarms and time marks on the slider, times that
 // users type; and a session that shows the past.
 import assert from 'node:assert/strict';
-import { test } from 'node:test';
+import { mock, test } from 'node:test';
 import { residuals, stretches } from '../../clients/web/app/cards/drift.js';
 import { Timeline } from '../../clients/web/app/timeline/timeline.js';
 import { Compare } from '../../clients/web/app/views/compare.js';
+import { Devices } from '../../clients/web/app/views/devices.js';
+import { Remote } from '../../clients/web/app/views/remote.js';
 import { readAddress, writeAddress } from '../../clients/web/core/address.js';
 import {
-    arrowS, ask, BAD, clustered, density, gaps, limitLines, line, lost, nextTo, raised, UNCERTAIN, witnesses,
+    arrowS, ask, BAD, clustered, density, gaps, limitLines, line, loaderOf, lost, nextTo, raised, UNCERTAIN, witnesses,
 } from '../../clients/web/core/history.js';
 import { fieldInstant, fieldText, ticks } from '../../clients/web/core/instant.js';
 import { LEAST_US, newSpanS, panned, readRange, zoomed } from '../../clients/web/core/trend_range.js';
@@ -242,6 +244,62 @@ test('a date field follows the plant\'s clock', () => {
         assert.equal(fieldInstant(bad, 'UTC'), null, bad);
     assert.equal(fieldText(Date.parse('2026-11-21T22:27:02.9Z') * 1000, 'Asia/Seoul'), '2026-11-22T07:27:02');
     assert.equal(fieldInstant('2026-11-22T07:27:02', 'UTC'), Date.parse('2026-11-22T07:27:02Z') * 1000);
+});
+
+test('a failed request for a list is repeated, and the answer to an earlier request never replaces a later one', async () => {
+    mock.timers.enable({ apis: ['setTimeout'] });
+    try {
+        const asked = [], taken = [], session = { welcomed: true };
+        const load = loaderOf(session, () => new Promise((done, fail) => asked.push({ done, fail })),
+            (answer, error) => taken.push(answer ?? error.message));
+        const [first, second] = [load(), load()];
+        asked[1].done('new');
+        await second;
+        asked[0].done('old');
+        await first;
+        assert.deepEqual(taken, ['new']);
+        const third = load();
+        asked[2].fail(new Error('cut'));
+        await third;
+        assert.deepEqual([taken.at(-1), asked.length], ['cut', 3]);
+        mock.timers.tick(5000);
+        assert.equal(asked.length, 4, 'asks again');
+        asked[3].fail(new Error('cut'));
+        await new Promise(setImmediate);
+        session.welcomed = false;
+        mock.timers.tick(5000);
+        assert.equal(asked.length, 4, 'without a connection, the next welcome asks again');
+    } finally {
+        mock.timers.reset();
+    }
+});
+
+test('the lists of walls and displays stay, with the reason, if they cannot be read', async () => {
+    await learnWords();
+    const { document } = globalThis, button = {}, node = () => ({ textContent: '', replaceChildren(...rows) { this.rows = rows; } });
+    globalThis.document = { getElementById: () => button };
+    try {
+        const session = { role: 'operator', model: {}, walls: { list: [], displays: [] } }, pane = { dataset: {}, replaceChildren() {} };
+        const remote = Object.assign(Object.create(Remote.prototype), { session, pane, panes: [{ wall: 'room', display: 1, area: 'main' }],
+            said: node(), element: {} });
+        pane.value = 'room/1/main';
+        pane.dataset.choices = JSON.stringify([['room/1/main', 'room 1: main']]);
+        remote.take(null, new Error('no server'));
+        assert.deepEqual([remote.element.hidden, remote.chosen.wall], [false, 'room'], 'the pointer can be switched off');
+        assert.match(remote.said.textContent, /^Walls could not be read: no server · /);
+        remote.take({ walls: [] }, null);
+        assert.deepEqual([remote.element.hidden, remote.panes], [true, []]);
+        const devices = Object.assign(Object.create(Devices.prototype), { note: node(), element: { hidden: false }, list: node(),
+            rowOf: ({ id }) => id });
+        devices.take({ list: [{ id: 'a' }] }, null);
+        devices.take(null, new Error('no server'));
+        assert.deepEqual([devices.list.rows, devices.element.hidden, devices.note.textContent],
+            [['a'], false, 'Displays could not be read: no server']);
+        devices.take({ list: null }, null);
+        assert.deepEqual([devices.element.hidden, devices.note.textContent], [true, '']);
+    } finally {
+        globalThis.document = document;
+    }
 });
 
 test('a week of residuals is drawn as a line for each stretch, scaled by sigma', () => {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Converts responses of /api/v1/history and of the alarm journal to what charts and the time bar draw. Only ask() and
-// askInTime() have side effects.
+// Sends HTTP requests: ask(), askInTime() and loaderOf(). Converts responses of /api/v1/history and of the alarm journal to what charts and
+// the time bar draw; these functions have no side effects.
 import { calls } from './alarms.js';
 import { answerText } from './refusals.js';
 import { say } from './words.js';
 
-// UNANSWERED_MS: timeout of askInTime() in milliseconds
-const UNANSWERED_MS = 60000;
+// UNANSWERED_MS: timeout of askInTime() in milliseconds; RETRY_MS: delay before loaderOf() repeats a failed request
+const UNANSWERED_MS = 60000, RETRY_MS = 5000;
 export const BAD = 2, UNCERTAIN = 1; // severity of a quality: the top two bits of an OPC UA status code
 export const severityOf = (quality) => Math.min(BAD, quality >>> 30);
 
@@ -33,6 +33,22 @@ export async function askInTime(path, query, token, as = 'json') {
     } finally {
         clearTimeout(timer);
     }
+}
+
+// Returns a function that requests something from the server: read() returns a promise of the answer. Calls take(answer, null), or
+// take(null, error), and repeats a failed request while the session is connected. Drops the answer if a later call has begun.
+export function loaderOf(session, read, take) {
+    let latest = 0, retry;
+    return async function load() {
+        const number = ++latest;
+        clearTimeout(retry);
+        const [answer, error] = await read().then((answered) => [answered, null], (why) => [null, why]);
+        if (number !== latest)
+            return;
+        if (error)
+            retry = setTimeout(() => session.welcomed && load(), RETRY_MS);
+        take(answer, error);
+    };
 }
 
 // Converts a tag's series to seconds and values for a chart; null breaks the line. A series of intervals is drawn as a line through their

@@ -6,6 +6,31 @@ import { asAsked } from './session.js';
 import { halves } from './split_view.js';
 import { add, along, dot, subtract } from './vector.js';
 
+const REPEAT_MS = 3000;
+
+// Decides when a module repeats an unanswered pick request. Each repetition waits twice as long as the previous one, because a repetition
+// makes the session ignore the answers to earlier requests.
+export class Repeater {
+    constructor() {
+        this.reset();
+    }
+
+    // The request was answered, or the module does not need its answer any more.
+    reset() {
+        this.waitMs = 0;
+    }
+
+    // A request was sent: a new one after reset(), otherwise a repetition. now: time in milliseconds.
+    sent(now) {
+        Object.assign(this, { sentAt: now, waitMs: 2 * this.waitMs || REPEAT_MS });
+    }
+
+    // Returns true while an unanswered request must not be repeated yet.
+    waits(now) {
+        return this.waitMs > 0 && now - this.sentAt < this.waitMs;
+    }
+}
+
 // Asks the server for a camera that shows an asset, a tag or the whole plant (id null); side: as in the message `fit` (PROTOCOL.md). The
 // server answers with `fitted`.
 export function askFit(session, { id = null, side = 'now', projection } = {}) {
@@ -29,8 +54,8 @@ export function askPick(session, [x, y], purpose, camera = null) {
     session.connection.send({ type: 'pick', seq: ++session.pickSeq, x, y, camera: cameraMessage(from) });
 }
 
-// Asks the server what is at a point of the plant, seen from the eye of a camera; the point may be outside the picture. Names the middle of
-// the picture, and a camera that has the point there. half: half of a split view, 0 left, 1 right.
+// Asks the server what is at a point of the plant, which may be outside the picture. Sends the pixel in the middle of the half, and the
+// camera turned (orthographic: shifted) so that the point is at this pixel. half: half of a split view, 0 left, 1 right.
 export function askPoint(session, point, purpose, half = 0, camera = asAsked(session.picture.camera)) {
     const { width, height } = session.following ?? session.size, all = halves(session.params, width), part = all[half] ?? all[0];
     const from = subtract(point, camera.target), { forward } = basis(camera), aside = along(from, forward, -dot(from, forward));

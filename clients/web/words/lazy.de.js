@@ -198,6 +198,7 @@ there: verbunden
 gone: dieser Bildschirm ist nicht verbunden
 sent: {title}, gesendet von {who}, {time}
 held: festgehalten von {who}, {time}
+unread: Videowände konnten nicht gelesen werden: {why}
 
 [devices]
 legend: Bildschirme
@@ -205,6 +206,7 @@ digits: Kopplungscode
 pair: Koppeln
 revoke: Entkoppeln
 is: Bildschirm {display} von {wall}, Adresse {from}, gekoppelt von {who}, {time}
+unread: Bildschirme konnten nicht gelesen werden: {why}
 
 [handover]
 title: Schichtübergabe, {plant}

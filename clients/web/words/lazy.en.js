@@ -197,6 +197,7 @@ there: connected
 gone: this display is not connected
 sent: {title}, sent by {who}, {time}
 held: held by {who}, {time}
+unread: Walls could not be read: {why}
 
 [devices]
 legend: Displays
@@ -204,6 +205,7 @@ digits: Pairing code
 pair: Pair
 revoke: Revoke
 is: Display {display} of {wall}, address {from}, paired by {who}, {time}
+unread: Displays could not be read: {why}
 
 [handover]
 title: Shift handover, {plant}

@@ -193,6 +193,7 @@ there: 연결됨
 gone: 이 디스플레이는 연결되어 있지 않습니다
 sent: {title}, {who} 보냄, {time}
 held: {who} 고정, {time}
+unread: 상황판을 읽을 수 없습니다: {why}
 
 [devices]
 legend: 디스플레이
@@ -200,6 +201,7 @@ digits: 페어링 코드
 pair: 페어링
 revoke: 페어링 해제
 is: {wall} 디스플레이 {display}, 주소 {from}, {who} 페어링, {time}
+unread: 디스플레이를 읽을 수 없습니다: {why}
 
 [handover]
 title: 교대 인수인계, {plant}

@@ -2,7 +2,7 @@
 // The card of a point on the plant's surface: its equipment, the value at the point (interpolated between sensors), the sensors
 // that contribute to the value, and the uncertainty.
 import { numberText, unitText, valueText } from '../../core/format.js';
-import { askPick, askPoint } from '../../core/requests.js';
+import { askPick, askPoint, Repeater } from '../../core/requests.js';
 import { asAsked } from '../../core/session.js';
 import { halves } from '../../core/split_view.js';
 import { say } from '../../core/words.js';
@@ -10,9 +10,8 @@ import { placeInPicture, standBeside } from './card_position.js';
 import { byId, glyph, make } from '../common/dom.js';
 import { closeButton, fill } from '../common/widgets.js';
 
-// SAME_M: largest distance in metres between two answers about the same point; REPEAT_MS: milliseconds after which an unanswered request
-// is repeated
-const SAME_M = 0.05, REPEAT_MS = 3000;
+// largest distance in metres between two answers about the same point
+const SAME_M = 0.05;
 
 export class Place {
     // showAsset(how, asset) hides an asset, makes it transparent or isolates it (hides all others). makeRoom() closes panels that leave no
@@ -22,10 +21,10 @@ export class Place {
         this.element = byId('place');
         new ResizeObserver(() => this.show()).observe(this.element);
         this.picked = null;
-        // pending request for what is at a point of the picture: 'new' (another point than the card's) or 'again' (the same
-        // point); null: none
+        // kind of the unanswered pick request. 'new': for the clicked point; 'again': for the card's point; null: none
         this.asked = null;
-        this.isLate = false; // true: readings or parameters have changed since the pending request
+        this.repeater = new Repeater();
+        this.isLate = false; // true: readings or parameters changed after the unanswered request was sent
         session.on('picked', (picked) => this.hear(picked));
         session.on('tags', () => this.ask());
         session.on('params', () => this.ask());
@@ -38,32 +37,41 @@ export class Place {
             return;
         this.half = this.session.shown.split && x >= this.viewport.width / 2 ? 1 : 0;
         this.clicked = { pixel: this.viewport.pixelOf(x, y), camera: asAsked(this.session.picture.camera) };
+        this.end();
         this.send('new');
     }
 
+    // Ends the wait for an answer.
+    end() {
+        this.asked = null;
+        this.repeater.reset();
+    }
+
     close() {
-        this.picked = this.asked = null;
+        this.picked = null;
+        this.end();
         this.element.hidden = true;
     }
 
-    // Sends a request: 'new' for the clicked point, 'again' for the card's point. It is repeated if there is no answer within repeatMs.
-    send(asked, repeatMs = REPEAT_MS) {
-        Object.assign(this, { asked, askedAt: performance.now(), repeatMs, isLate: false });
+    // Sends a pick request. ask() repeats the request if the server does not answer in time.
+    send(asked) {
+        Object.assign(this, { asked, isLate: false });
+        this.repeater.sent(performance.now());
         if (asked === 'new')
             askPick(this.session, this.clicked.pixel, 'place', this.clicked.camera);
         else
             askPoint(this.session, this.picked.position, 'place', this.half);
     }
 
-    // Requests the point's value again when readings or parameters change, even while the point is outside the picture. Repeats an
-    // unanswered request. Each repetition waits twice as long as the previous one, because the answer to an earlier request is ignored.
+    // Requests the value again if readings or parameters have changed, even if the point is outside the picture. Repeats an unanswered
+    // request.
     ask() {
-        const { asked, repeatMs } = this;
-        this.isLate = asked !== null && performance.now() - this.askedAt < repeatMs;
+        const { asked } = this;
+        this.isLate = this.repeater.waits(performance.now());
         if (this.isLate || !this.session.picture)
             return;
         if (asked !== null)
-            this.send(asked, 2 * repeatMs);
+            this.send(asked);
         else if (this.picked)
             this.send('again');
     }
@@ -71,14 +79,15 @@ export class Place {
     hear(picked) {
         if (this.asked === null)
             return; // the card was closed meanwhile
-        // The server answers only the newest request for what is at a point. An answer with another purpose is for another
-        // module, whose request has replaced this card's: the card gets no answer.
+        const { asked } = this, again = asked === 'again';
+        this.end();
+        // The server answers only the newest pick request of the session. Another module's answer means that this card's request was
+        // replaced. A replaced request for a clicked point is sent again.
         if (picked.purpose !== 'place') {
-            this.asked = null;
+            if (!again)
+                this.send(asked);
             return;
         }
-        const again = this.asked === 'again';
-        this.asked = null;
         if (again && !this.isSamePlace(picked)) {
             this.close(); // closes the card, because its point is now hidden behind other equipment or its equipment was hidden
             return;

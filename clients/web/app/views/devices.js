@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Lists paired wall displays, for engineers: pairing a display by the code that it shows, and revoking a pairing.
 import { zoneClock } from '../../core/format.js';
-import { ask } from '../../core/history.js';
+import { askInTime, loaderOf } from '../../core/history.js';
 import { refusalText } from '../../core/refusals.js';
 import { say } from '../../core/words.js';
-import { byId, make } from '../common/dom.js';
+import { byId, make, setText } from '../common/dom.js';
 
 export class Devices {
     constructor({ session, tell }) {
@@ -12,23 +12,28 @@ export class Devices {
         this.list = make('ul', { id: 'devices-list' });
         this.digits = make('input', { id: 'devices-digits', inputmode: 'numeric', maxlength: 7, autocomplete: 'off',
             placeholder: '123 456', 'aria-label': say('devices.digits') });
+        this.note = make('p', { class: 'note', id: 'devices-note' });
         const form = make('form', { class: 'line', onsubmit: (event) => this.pair(event) },
             make('span', {}, say('devices.digits')), this.digits, make('button', { type: 'submit' }, say('devices.pair')));
-        this.element = make('fieldset', { id: 'devices', hidden: true }, make('legend', {}, say('devices.legend')), this.list, form);
+        this.element = make('fieldset', { id: 'devices', hidden: true }, make('legend', {}, say('devices.legend')), this.list,
+            this.note, form);
         byId('views').append(this.element);
+        // Loads the list of displays.
+        this.learn = loaderOf(session, async () => (session.role === 'engineer' ? askInTime('api/v1/devices', {}, session.token) : {}),
+            (answer, error) => this.take(answer, error));
         session.on('welcome', () => this.learn());
         session.on('paired', ({ kept, why, refusal }) => (kept ? this.learn() : tell(refusalText(why, refusal))));
         this.learn();
     }
 
-    // Loads the list of displays. It stays empty if displays need no token, or the user is not an engineer.
-    async learn() {
-        const { session } = this, turn = this.turn = (this.turn ?? 0) + 1;
-        const { list } = session.role === 'engineer' ? await ask('api/v1/devices', {}, session.token).then((answer) => answer.json(),
-            () => ({})) : {};
-        if (turn !== this.turn)
+    // Shows the list of displays. There is none if displays need no token, or if the user is not an engineer. If the request failed, keeps
+    // the previous list and shows the error.
+    take(answer, error) {
+        setText(this.note, error ? say('devices.unread', { why: error.message }) : '');
+        const list = answer?.list;
+        this.element.hidden = !list && !error;
+        if (error)
             return;
-        this.element.hidden = !list;
         this.list.replaceChildren(...(list ?? []).map((device) => this.rowOf(device)));
     }
 

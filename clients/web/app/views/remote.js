@@ -2,11 +2,11 @@
 // Controls a control room's video wall from a user's desk: sends the current view to a pane (an area) of the wall, makes the
 // pane keep a view until further notice, and points at a position in the plant.
 import { timeOrDay, zoneClock } from '../../core/format.js';
-import { ask } from '../../core/history.js';
+import { askInTime, loaderOf } from '../../core/history.js';
 import { quantityText } from '../../core/model.js';
 import { textOf, viewOf } from '../../core/named_views.js';
 import { refusalText } from '../../core/refusals.js';
-import { askPick } from '../../core/requests.js';
+import { askPick, Repeater } from '../../core/requests.js';
 import { say } from '../../core/words.js';
 import { Devices } from './devices.js';
 import { fillSelect } from '../common/choices.js';
@@ -20,7 +20,8 @@ const nameOf = ({ wall, display, area }) => `${wall}/${display}/${area}`;
 export class Remote {
     constructor(page) {
         const { session, tell, selection, viewport } = page;
-        Object.assign(this, { page, session, selection, viewport, panes: [], pointing: false });
+        Object.assign(this, { page, session, selection, viewport, panes: [], pointing: false, unread: null, seenSeq: session.pickSeq });
+        this.repeater = new Repeater();
         const button = (name, onclick) => make('button', { type: 'button', id: `remote-${name}`, onclick }, say(`remote.${name}`));
         this.pane = make('select', { id: 'remote-pane', 'aria-label': say('remote.pane'), onchange: () => this.show() });
         this.desk = make('input', { id: 'remote-desk', maxlength: LONGEST, placeholder: say('remote.desk'),
@@ -34,18 +35,20 @@ export class Remote {
             make('label', { class: 'line' }, make('span', {}, say('remote.point')), this.points));
         byId('views').append(this.element);
         this.devices = new Devices(page);
+        // Loads the list of video walls; a reload of the plant may have changed it.
+        this.learn = loaderOf(session, () => askInTime('api/v1/walls', {}, session.token), (answer, error) => this.take(answer, error));
         session.on('walls', () => this.show());
-        session.on('welcome', () => this.learn());
+        session.on('welcome', () => { this.repeater.reset(); this.learn(); });
         session.on('sent_to_wall', ({ kept, why, refusal }) => kept || tell(refusalText(why, refusal)));
-        session.on('picked', (picked) => { this.heardSeq = picked.seq; this.onPicked(picked); });
+        session.on('picked', (picked) => this.onPicked(picked));
         setInterval(() => this.pointing && this.ask(), POINT_MS);
         this.learn();
     }
 
-    // Loads the list of video walls; a reload of the plant may have changed it.
-    async learn() {
-        const { walls } = await ask('api/v1/walls', {}, this.session.token).then((answer) => answer.json(), () => ({ walls: [] }));
-        this.panes = walls.flatMap(({ id: wall, displays }) => displays.flatMap(({ panes }, index) =>
+    // Stores the list of video walls. If the request failed, keeps the previous list and shows the error.
+    take(answer, error) {
+        this.unread = error?.message ?? null;
+        this.panes = error ? this.panes : answer.walls.flatMap(({ id: wall, displays }) => displays.flatMap(({ panes }, index) =>
             panes.filter(({ kind, tile }) => kind === 'views' && !(tile?.number > 1))
                 .map(({ area, title }) => ({ wall, display: index + 1, area, title }))));
         const before = this.pane.value;
@@ -87,9 +90,12 @@ export class Remote {
 
     show() {
         const { session, chosen, order } = this;
-        this.element.hidden = this.panes.length === 0 || !MAY.includes(session.role);
-        if (!chosen || !session.model)
+        this.element.hidden = (this.panes.length === 0 && !this.unread) || !MAY.includes(session.role);
+        const unread = this.unread && say('remote.unread', { why: this.unread });
+        if (!chosen || !session.model) {
+            setText(this.said, unread ?? '');
             return;
+        }
         const there = session.walls?.displays.some(({ wall, display }) => wall === chosen.wall && display === chosen.display);
         const texts = [say(there ? 'remote.there' : 'remote.gone')];
         if (order) {
@@ -97,7 +103,7 @@ export class Remote {
             const who = [order.desk, order.by].filter(Boolean).join(', ');
             texts.push(say(order.held ? 'remote.held' : 'remote.sent', { title: order.title, who, time }));
         }
-        setText(this.said, texts.join(' · '));
+        setText(this.said, [unread, ...texts].filter(Boolean).join(' · '));
         byId('remote-back').disabled = !order;
         byId('remote-hold').disabled = Boolean(order?.held);
     }
@@ -113,23 +119,31 @@ export class Remote {
 
     ask() {
         const { pointed } = this.page, now = performance.now(), place = pointed && `${pointed.x} ${pointed.y}`;
-        if (!place || !this.chosen || this.waitsFor(now) || (place === this.place && now - this.askedAt < AGAIN_MS))
+        if (!place || !this.chosen || this.waits(now) || (place === this.place && now - this.askedAt < AGAIN_MS))
             return;
         this.place = place;
         this.askedAt = now;
         askPick(this.session, this.viewport.pixelOf(pointed.x, pointed.y), 'point');
+        this.note(now);
+    }
+
+    // Notes a pick request of this or another module.
+    note(now) {
+        if (this.session.pickSeq !== this.seenSeq)
+            this.repeater.sent(now);
+        this.seenSeq = this.session.pickSeq;
     }
 
     // Returns true if the next pick request must wait for the answer to the previous one: the server answers only the latest
     // request, and a pick by the user's click takes precedence.
-    waitsFor(now) {
-        const { pickSeq } = this.session;
-        if (pickSeq !== this.seenSeq)
-            [this.seenSeq, this.seenAt] = [pickSeq, now];
-        return pickSeq !== this.heardSeq && now - this.seenAt < AGAIN_MS;
+    waits(now) {
+        this.note(now);
+        return this.repeater.waits(now);
     }
 
-    onPicked({ purpose, asset, position }) {
+    onPicked({ seq, purpose, asset, position }) {
+        this.seenSeq = seq;
+        this.repeater.reset();
         if (this.pointing && purpose === 'point' && this.chosen)
             this.session.post({ type: 'point', ...this.address, ...(asset === null ? {} : { position }) });
     }

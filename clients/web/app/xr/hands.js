@@ -3,7 +3,7 @@
 // or the floor. Grabbing moves the room.
 import { RADIANS } from '../../core/camera.js';
 import { directionOf, floorHit, hitOf, panelHit, pointOf, poseOf, standAt } from '../../core/headset_views.js';
-import { askPoint } from '../../core/requests.js';
+import { askPoint, Repeater } from '../../core/requests.js';
 import { asAsked } from '../../core/session.js';
 import { add, along, cross, dot, length, scale, subtract, unit } from '../../core/vector.js';
 import { Board, cardLines, showCard, showColour, showRing, showWrist } from './boards.js';
@@ -11,15 +11,14 @@ import { Board, cardLines, showCard, showColour, showRing, showWrist } from './b
 const REACH = Math.cos(2 * RADIANS); // cosine of an angle: a ray whose angle to a marker's direction is smaller than that hits the marker
 const LEVEL = Math.cos(35 * RADIANS); // cosine of the steepest slope of a floor on which a user can stand
 const RAY_M = 4, RAY_WIDE_M = 0.004, RING_M = 0.5;
-// AGAIN_MS: milliseconds between requests for the value that a card shows; REPEAT_MS: milliseconds after which an unanswered request is
-// repeated
-const AGAIN_MS = 1000, REPEAT_MS = 3000;
+const AGAIN_MS = 1000; // milliseconds between requests for the value that a card shows
 const WRIST_UP_M = 0.16; // height in metres of the panel at the wrist above the hand
 
 export class Hands {
     constructor(headset) {
         const { painter } = headset;
         Object.assign(this, { headset, rays: new Map(), grabbed: null, asked: null, card: null, wristButton: null, askedAt: 0 });
+        this.repeater = new Repeater();
         this.wrist = new Board(painter, 640, 760);
         this.paper = new Board(painter, 760, 400);
         this.line = showColour(new Board(painter, 4, 4), 'rgb(255 255 255 / 80%)');
@@ -97,6 +96,7 @@ export class Hands {
     pull(source) {
         const target = this.rays.get(source)?.target;
         this.card = null;
+        this.repeater.reset();
         if (target?.kind === 'wrist')
             this.wristButton?.act();
         else if (target?.kind === 'floor')
@@ -110,10 +110,11 @@ export class Hands {
         headset.rig = standAt(headset.rig, [...headset.head.slice(12, 15)], along(point, this.up, headset.floorM));
     }
 
-    // Asks the server what is at a point of the plant; hear() gets the answer. repeatMs: time after which ask() repeats the request.
-    pick({ point }, purpose = 'headset', repeatMs = REPEAT_MS) {
+    // Asks the server what is at a point of the plant; hear() gets the answer.
+    pick({ point }, purpose = 'headset') {
         const { session, shown } = this.headset;
-        Object.assign(this, { asked: purpose, askedAt: performance.now(), repeatMs });
+        Object.assign(this, { asked: purpose, askedAt: performance.now() });
+        this.repeater.sent(this.askedAt);
         askPoint(session, point, purpose, 0, asAsked(shown.camera));
     }
 
@@ -121,6 +122,7 @@ export class Hands {
         const { asked } = this;
         // an answer to another module's request also ends this module's request, because the server answers only the latest
         this.asked = null;
+        this.repeater.reset();
         if (picked.purpose !== asked || (asked === 'headset again' && !this.card))
             return;
         const { sensor, asset, normal, position } = picked;
@@ -132,18 +134,17 @@ export class Hands {
             this.card = { picked, at: position };
     }
 
-    // Requests the value at the card's point again when readings change. Each repetition of an unanswered request waits twice as long as
-    // the previous one, because the answer to an earlier request is ignored.
+    // Requests the value at the card's point again when readings change, and repeats an unanswered request.
     ask() {
-        const waitMs = this.asked ? this.repeatMs : AGAIN_MS;
-        if (!this.card || this.card.picked.sensor || performance.now() - this.askedAt < waitMs || !this.headset.shown)
-            return;
-        this.pick({ point: this.card.at }, 'headset again', this.asked ? 2 * this.repeatMs : REPEAT_MS);
+        const now = performance.now(), isEarly = this.asked ? this.repeater.waits(now) : now - this.askedAt < AGAIN_MS;
+        if (this.card && !this.card.picked.sensor && !isEarly && this.headset.shown)
+            this.pick({ point: this.card.at }, 'headset again');
     }
 
     // Closes the card about a sensor or point: after a reconnect its values are not valid any more.
     forget() {
         this.card = this.asked = null;
+        this.repeater.reset();
     }
 
     // Returns the rectangles to draw for the controllers: { wrist (the panel at the wrist), others (rays, the card, ...) }. isStale true:
