@@ -2,8 +2,10 @@
 // The tables of alarms and of the alarm journal: order of the rows, filter, area, export as CSV, and named time spans.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
+import { Journal } from '../../clients/web/app/alarms/journal.js';
 import { areaOf, areasOf, isIn, journalRow, nextSort, sortRows, tableCsv } from '../../clients/web/core/alarm_table.js';
 import { journalSpan } from '../../clients/web/core/handover.js';
+import { learnWords } from '../../clients/web/core/words.js';
 
 const row = (name, more = {}) => ({ tag: { name, unit: '°C' }, kind: 'H', state: 'active', priority: 2, us: 10, area: '', about: '',
     value: 1, limit: 2, who: '', reason: '', ...more });
@@ -62,4 +64,23 @@ test('yesterday is from midnight to midnight in the plant\'s zone, also on a day
     assert.deepEqual(yesterday('2026-03-30T10:00Z', 'Europe/Berlin'), [us('2026-03-28T23:00Z'), us('2026-03-29T22:00Z')]);
     assert.deepEqual(journalSpan('today', us('2026-11-26T10:00Z'), 'UTC'), [us('2026-11-26T00:00Z'), null]);
     assert.deepEqual(journalSpan('shift', 9 * 3600e6, 'UTC'), [3600e6, null]);
+});
+
+test('a journal that had too many rows opens again without rows', async () => {
+    await Promise.all([learnWords(), learnWords('alarms')]);
+    const { document } = globalThis, node = () => ({ selectedOptions: [{ text: '' }], value: '', replaceChildren() {} });
+    globalThis.document = { getElementById: node };
+    try {
+        const shown = [], list = { open: true, journalOpen: true, applied: [], filter: { words: '' },
+            showApplied: (...counts) => shown.push(counts) };
+        const journal = Object.assign(Object.create(Journal.prototype), { list, span: node(), more: node(), note: node(), older: node(),
+            table: { sorted: (rows) => rows, fill: () => [] }, shown: 200, rows: [{}], cut: true, failed: 'no answer',
+            session: { model: { plant: { time_zone: 'UTC' } }, clockUs: () => 0 } });
+        journal.rest();
+        journal.show();
+        assert.deepEqual([shown[0][1], journal.older.hidden], [0, true]);
+        assert.doesNotMatch(journal.note.textContent, /no answer/);
+    } finally {
+        globalThis.document = document;
+    }
 });

@@ -65,11 +65,6 @@ export class AlarmList {
         return this.session.model?.alarms ?? null;
     }
 
-    // Returns today's date, on which the texts of times in all rows depend.
-    get today() {
-        return todayOf(this.session);
-    }
-
     get open() {
         return !byId('alarms').hidden;
     }
@@ -143,7 +138,7 @@ export class AlarmList {
     tick() {
         if (!this.open)
             return;
-        if (this.shownFresh !== this.overlay.fresh || this.shownDay !== this.today)
+        if (this.shownFresh !== this.overlay.fresh || this.shownDay !== todayOf(this.session))
             this.show();
         for (const [element, row] of this.journalOpen ? [] : this.drawn ?? [])
             refreshCells(this.session, element, row, this.overlay.fresh);
@@ -154,7 +149,7 @@ export class AlarmList {
             return;
         const { fresh } = this.overlay;
         this.shownFresh = fresh;
-        this.shownDay = this.today;
+        this.shownDay = todayOf(this.session); // texts of times in all rows depend on today's date
         byId('alarms-then').hidden = this.journalOpen || this.session.time.atUs === null;
         setText(byId('alarms-stale'), fresh ? '' : say('alarms.stale', { time: asOf(this.session) }));
         this.keepFocus(() => this.showList());
@@ -245,7 +240,7 @@ export class AlarmList {
     }
 
     fill(id, rows) {
-        const { today } = this;
+        const today = todayOf(this.session);
         return this.table.fill(byId(id), rows, (row) => JSON.stringify([today, row, rowActions(row, this.alarms.mode, this.role)],
             (key, value) => (key === 'tag' ? undefined : value)), (row) => this.draw(row));
     }

@@ -3,12 +3,13 @@
 import { isIn, journalRow, tableCsv } from '../../core/alarm_table.js';
 import { journalSpan, readJournal } from '../../core/handover.js';
 import { fieldInstant, fieldText } from '../../core/instant.js';
-import { ask } from '../../core/history.js';
+import { askInTime } from '../../core/history.js';
 import { dayTime, zoneClock } from '../../core/format.js';
 import { say } from '../../core/words.js';
 import { byId, make, setText } from '../common/dom.js';
 import { fillSelect } from '../common/choices.js';
 import { saveFile } from '../common/save_file.js';
+import { todayOf } from './alarm_bar.js';
 import { AlarmTable, momentButton, refreshCells, rowOf } from './alarm_table.js';
 
 const SPANS = ['shift', 'day', 'today', 'yesterday', 'week', 'chosen'];
@@ -57,7 +58,7 @@ export class Journal {
 
     // Removes all rows when the journal goes out of sight; otherwise the document would grow with every alarm change.
     rest() {
-        Object.assign(this, { rows: [], drawn: [], number: (this.number ?? 0) + 1 });
+        Object.assign(this, { rows: [], drawn: [], cut: false, failed: null, number: (this.number ?? 0) + 1 });
         byId('journal-list').replaceChildren();
     }
 
@@ -108,7 +109,7 @@ export class Journal {
         Object.assign(this, { dirty: false, readAt: performance.now() });
         if (fromUs === null)
             return;
-        const get = async (query) => (await ask('api/v1/alarms/journal', query, this.session.token)).json();
+        const get = (query) => askInTime('api/v1/alarms/journal', query, this.session.token);
         try {
             const { rows, cut, failed } = await readJournal(get, fromUs / 1e6, toUs === null ? 'now' : toUs / 1e6, this.most);
             if (number === this.number)
@@ -138,7 +139,7 @@ export class Journal {
     show() {
         if (!this.isShown)
             return;
-        const passing = this.table.sorted(this.passing), all = this.rows.length, { today } = this.list;
+        const passing = this.table.sorted(this.passing), all = this.rows.length, today = todayOf(this.session);
         this.drawn = this.table.fill(byId('journal-list'), passing.slice(0, this.shown), ({ id }) => `${id} ${today}`,
             (row) => this.draw(row));
         const changes = byId('journal-which');
