@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A clock that the test advances, and a fake WebSocket whose other end the test controls.
+// A clock that the test advances, a fake WebSocket whose other end the test controls, and a fake HTTP server.
 import { readFileSync } from 'node:fs';
 import { Connection } from '../../clients/web/core/connection.js';
 import { Session } from '../../clients/web/core/session.js';
@@ -91,3 +91,22 @@ export function makeSession(wanted) {
         session.on(name, (value) => events.push([name, value]));
     return { ...bench, session, events };
 }
+
+// Replaces fetch() while f runs. answer(query, options, path): returns the server's answer, or throws if there is none.
+export async function withServer(answer, f) {
+    const { fetch } = globalThis;
+    globalThis.fetch = async (url, options) => {
+        const [path, query] = url.split('?');
+        return Response.json(await answer(new URLSearchParams(query), options, path));
+    };
+    try {
+        await f();
+    } finally {
+        globalThis.fetch = fetch;
+    }
+}
+
+// An answer() of withServer() for a request that stays unanswered until the page gives up.
+export const silent = (query, { signal }) => new Promise((done, fail) => {
+    signal?.addEventListener('abort', () => fail(signal.reason));
+});

@@ -16,6 +16,7 @@ import { fieldInstant, fieldText, ticks } from '../../clients/web/core/instant.j
 import { LEAST_US, newSpanS, panned, readRange, zoomed } from '../../clients/web/core/trend_range.js';
 import { alarmSpans, bands, statistics, valueAt, withNewest } from '../../clients/web/core/trend_values.js';
 import { learnWords } from '../../clients/web/core/words.js';
+import { withServer } from './fixtures.mjs';
 
 const GOOD_CODE = 0, UNCERTAIN_CODE = 0x408f0000, BAD_CODE = 0x80050000;
 const points = (...list) => ({ step: false, bucket_us: 0, points: list });
@@ -180,8 +181,14 @@ test('time ticks are round in the plant’s time zone', () => {
     midnights('Europe/Berlin', 24, 25, 26); // the clocks are set back on 25 October
     assert.deepEqual(texts('2026-10-01T00:00Z', '2026-10-31T00:00Z', 5, 'Europe/Berlin', 86400).map((text) => text.slice(5)),
         Array(4).fill('T00:00'));
-    assert.deepEqual(texts('2026-03-28T23:00Z', '2026-03-29T03:00Z', 9, 'Europe/Berlin').slice(0, 6),
-        ['03-29T00:00', '03-29T00:30', '03-29T01:00', '03-29T01:30', '03-29T03:00', '03-29T03:30']);
+    assert.deepEqual(texts('2026-03-28T23:00Z', '2026-03-29T03:00Z', 9, 'Europe/Berlin').map((text) => text.slice(6)),
+        ['00:00', '00:30', '01:00', '01:30', '03:00', '03:30', '04:00', '04:30', '05:00'], 'the clocks skip 02:00');
+    const back = ['00:00', '00:30', '01:00', '01:30', '02:00', '02:30', '02:00', '02:30', '03:00', '03:30'];
+    assert.deepEqual(texts('2026-10-24T22:00Z', '2026-10-25T02:30Z', 9, 'Europe/Berlin').map((text) => text.slice(6)), back,
+        'the hour from 02:00 occurs twice');
+    assert.deepEqual(texts('2026-10-25T00:40Z', '2026-10-25T01:20Z', 2, 'Europe/Berlin', 1800).map((text) => text.slice(6)), ['02:00']);
+    assert.deepEqual(texts('2026-10-24T10:00Z', '2026-10-25T14:00Z', 14, 'Europe/Berlin').map((text) => text.slice(6)),
+        ['12:00', '14:00', '16:00', '18:00', '20:00', '22:00', '00:00', '02:00', '04:00', '06:00', '08:00', '10:00', '12:00', '14:00']);
 });
 
 test('history requests carry the token, and errors show the server’s words', async () => {
@@ -311,32 +318,27 @@ test('a week of residuals is drawn as a line for each stretch, scaled by sigma',
 
 test('the time bar keeps its marks if the server does not answer, and does not take that for a time without alarms', async () => {
     await learnWords();
-    const { fetch } = globalThis, told = [], session = { token: null, clockUs: () => 9e6, time: { atUs: null }, model: { tags: [] } };
+    const told = [], session = { token: null, clockUs: () => 9e6, time: { atUs: null }, model: { tags: [] } };
     const bar = Object.assign(Object.create(Timeline.prototype), { session, tell: (text) => told.push(text), marksAt: 0, toUs: 9e6,
         marks: [], gaps: [], lost: [], draw() {} });
     Object.defineProperty(bar, 'spanUs', { value: 3e6 });
     const raise = { time_us: 8e6, tag: 'TI-1', kind: 'H', event: 'raise', state: 'unacknowledged', before: 'normal', priority: 2 };
-    const answers = (gaps, rows) => {
-        globalThis.fetch = async (url) => Response.json(url.includes('gaps') ? { gaps } : { rows, next_before: null });
-    };
-    try {
-        answers([[7e6, 7.5e6]], [raise]);
-        await bar.askMarks();
-        const state = () => [bar.marks.map(({ us }) => us), bar.gaps, bar.failed !== ''];
-        assert.deepEqual(state(), [[8e6], [[7e6, 7.5e6]], false]);
-        globalThis.fetch = async () => { throw new Error(); };
+    const answers = (gaps, rows) => (query, options, path) => (path.includes('gaps') ? { gaps } : { rows, next_before: null });
+    const state = () => [bar.marks.map(({ us }) => us), bar.gaps, bar.failed !== ''];
+    await withServer(answers([[7e6, 7.5e6]], [raise]), () => bar.askMarks());
+    assert.deepEqual(state(), [[8e6], [[7e6, 7.5e6]], false]);
+    await withServer(() => { throw new Error(); }, async () => {
         await bar.askMarks();
         assert.deepEqual(state(), [[8e6], [[7e6, 7.5e6]], true]);
         await bar.goToAlarm(true);
         assert.match(told.at(-1), /^Alarms could not be read: ./);
-        answers([], []);
+    });
+    await withServer(answers([], []), async () => {
         await bar.askMarks();
         assert.deepEqual(state(), [[], [], false]);
         await bar.goToAlarm(true);
         assert.match(told.at(-1), /^No earlier alarm/);
-    } finally {
-        globalThis.fetch = fetch;
-    }
+    });
 });
 
 test('the right half of two times gets the sensor, the factors and the baseline of the left half, if it can have them', () => {

@@ -7,6 +7,7 @@ import { Plot } from '../../clients/web/app/trends/plot.js';
 import { Trends } from '../../clients/web/app/trends/trends.js';
 import { bands } from '../../clients/web/core/trend_values.js';
 import { learnWords } from '../../clients/web/core/words.js';
+import { silent, withServer } from './fixtures.mjs';
 
 const SPAN = [0, 100e6];
 const series = (tag) => ({ tag, bucket_us: 0, points: [[0, 1, 0], [50e6, 2, 0]] });
@@ -157,17 +158,6 @@ function trendsOf() {
     return { notes, trends };
 }
 
-// Replaces fetch() while f runs. answer(query): returns the server's answer, or throws if there is none.
-async function withServer(answer, f) {
-    const { fetch } = globalThis;
-    globalThis.fetch = async (url, more) => Response.json(await answer(new URLSearchParams(url.split('?')[1]), more));
-    try {
-        await f();
-    } finally {
-        globalThis.fetch = fetch;
-    }
-}
-
 // A journal with `count` changes at the instants 1, 2, ..., in which an alarm is raised and clears in turn.
 const journal = (count) => (query) => {
     const before = Number(query.get('before') ?? count + 1), limit = Number(query.get('limit'));
@@ -186,6 +176,18 @@ test('a trend reads the alarms of its whole time range, however many there are, 
     await withServer(journal(20000), async () => {
         const { alarms, isCut } = await trends.alarmsOf(tag, [2001, 20001]);
         assert.deepEqual([alarms.length, isCut], [5000, true]);
+    });
+    const rising = (query) => { // the first of 7000 changes raised the alarm HH, which is still active
+        const { rows, ...more } = journal(7000)(query);
+        return { rows: rows.map((row) => (row.id === 1 ? { ...row, kind: 'HH' } : row)), ...more };
+    };
+    trends.session.model.alarms = { rows: new Map([[1, { tag, kind: 'HH', active: true, raisedUs: 1 }]]) };
+    await withServer(rising, async () => {
+        const { alarms: [first, ...others], isCut } = await trends.alarmsOf(tag, [6001, 7001]);
+        assert.deepEqual([first.kind, first.us, others.length, isCut], ['HH', 1, 500, false], 'an old alarm that is still active');
+    });
+    await withServer(journal(20000), async () => {
+        assert.ok((await trends.alarmsOf(tag, [19001, 20001])).isCut, 'its raise is too many pages away');
     });
     await withServer(() => ({ rows: [], next_before: null }), async () => {
         assert.deepEqual(await trends.alarmsOf(tag, [0, 1]), { alarms: [], isCut: false });
@@ -241,9 +243,7 @@ test('a live trend marks alarms even if their requests take longer than the time
 
 test('a trend abandons a request that the server never answers, and can then ask again', async () => {
     await learnWords();
-    const { trends, notes } = trendsOf(), silent = (query, { signal }) => new Promise((done, fail) => {
-        signal?.addEventListener('abort', () => fail(signal.reason));
-    });
+    const { trends, notes } = trendsOf();
     const node = { append() {}, setAttribute() {}, addEventListener() {}, clientWidth: 800 };
     globalThis.document = { getElementById: () => node, createElement: () => node, head: node };
     mock.timers.enable({ apis: ['setTimeout'] });

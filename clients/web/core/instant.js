@@ -38,14 +38,22 @@ export function ticks(fromUs, toUs, most, timeZone, leastS = 1) {
         return out;
     // steps in local time, because days with a change of the clocks are longer or shorter
     const beginMs = Date.parse(`${fieldText(fromUs, timeZone)}Z`);
-    let offset = beginMs - Math.floor(fromUs / 1e6) * 1000;
+    let offset = beginMs - Math.floor(fromUs / 1e6) * 1000, lastUs = null;
+    const isRound = (us) => Date.parse(`${fieldText(us, timeZone)}Z`) % step === 0;
     for (let localMs = Math.floor(beginMs / step) * step; ; localMs += step) {
         const text = new Date(localMs).toISOString().slice(0, 19), likelyUs = (localMs - offset) * 1000;
         const us = fieldText(likelyUs, timeZone) === text ? likelyUs : fieldInstant(text, timeZone);
+        // a gap of more than a step, because the clocks are set back: adds the ticks of the repeated hour
+        for (let againUs = (lastUs ?? us) + step * 1000; againUs < us && againUs <= toUs; againUs += step * 1000) {
+            if (againUs >= fromUs && isRound(againUs))
+                out.push(againUs);
+        }
         if (us > toUs)
             return out;
         offset = localMs - us / 1000;
-        if (us >= fromUs && us !== out.at(-1))
+        const isLater = lastUs === null || us > lastUs; // times that the clocks skip lead to later times of the same hour
+        if (isLater && us >= fromUs)
             out.push(us);
+        lastUs = isLater ? us : lastUs;
     }
 }

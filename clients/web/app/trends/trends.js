@@ -455,8 +455,8 @@ export class Trends {
         return [...unread, ...unshown, ...this.unmarked].join(' · ');
     }
 
-    // Requests the alarms of the tags in the time range, and earlier alarms that may last into the range. As in refresh(), a further call
-    // waits until these requests have ended, and their answers are shown even if the range has changed meanwhile.
+    // Requests the tags' alarms in the time range, and earlier alarms that are still active. Only one round of requests runs at a time: a
+    // call during a round starts another round at its end. The answers are shown even if the range has changed meanwhile.
     async askAlarms() {
         this.isAlarmsLate = this.isAskingAlarms;
         if (this.isAskingAlarms)
@@ -486,11 +486,19 @@ export class Trends {
         this.redraw();
     }
 
-    // Returns a promise of a tag's alarms in a time range: { alarms, isCut (true: the earliest ones are missing) }. Stops early if the
-    // tag is removed from the charts.
+    // Returns the kinds of a tag's alarms that are active now and were raised before an instant.
+    activeKinds(name, us) {
+        const isActive = ({ tag, active, raisedUs }) => tag.name === name && active && raisedUs < us;
+        return [...this.session.model?.alarms?.rows.values() ?? []].filter(isActive).map(({ kind }) => kind);
+    }
+
+    // Returns a promise of a tag's alarms in a time range: { alarms, isCut (true: the earliest ones are missing) }. Reads the journal back
+    // to the start of the range, and further until it has the raises of all active alarms. Alarms from before the range that have cleared
+    // are included only if a page that was read has their raise. Stops reading pages if the tag is removed from the charts.
     async alarmsOf(tag, [from, to]) {
         const { name, unit } = tag, rows = [], query = { tag: name, to: (to / 1e6).toFixed(3), limit: ALARM_ROWS };
-        const isCut = () => query.before !== null && !(rows.at(-1)?.time_us <= from);
+        const active = this.activeKinds(name, to), isRaised = (kind) => rows.some((row) => row.kind === kind && row.event === 'raise');
+        const isCut = () => query.before !== null && !(rows.at(-1)?.time_us <= from && active.every(isRaised));
         for (let i = 0; i < ALARM_PAGES && isCut() && this.tags.includes(tag); i++) {
             const page = await askInTime('api/v1/alarms/journal', query, this.session.token);
             rows.push(...page.rows);
