@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Named views: a session switches to a named view whatever it showed before, and ids are made from titles.
 import assert from 'node:assert/strict';
-import { test } from 'node:test';
+import { mock, test } from 'node:test';
+import { NamedViews } from '../../clients/web/app/views/named_views.js';
 import { readAddress, writeAddress } from '../../clients/web/core/address.js';
 import { idFor, isEngineers, newView, regained, textOf, viewOf } from '../../clients/web/core/named_views.js';
-import { makeSession, vector } from './fixtures.mjs';
+import { makeSession, silent, vector, withServer } from './fixtures.mjs';
 
 const welcome = vector('server/welcome.json');
 function greeted(role) {
@@ -144,4 +145,21 @@ test('an id made from a title is plain, short and unique', () => {
     assert.equal(idFor('보일러', []), 'view');
     assert.equal(idFor('A', [{ id: 'a' }, { id: 'a-2' }]), 'a-3');
     assert.ok(idFor('x'.repeat(99), []).length <= 48);
+});
+
+test('thumbnails are requested again after a request that the server never answers', async () => {
+    mock.timers.enable({ apis: ['setTimeout'] });
+    try {
+        const views = Object.assign(Object.create(NamedViews.prototype), { session: { token: null, views: [{ id: 'a', view: '' }] },
+            pictures: new Map() });
+        await withServer(silent, async () => {
+            const drawn = views.draw();
+            assert.equal(views.drawing, true);
+            mock.timers.tick(61000);
+            await drawn;
+            assert.equal(views.drawing, false);
+        });
+    } finally {
+        mock.timers.reset();
+    }
 });

@@ -5,7 +5,7 @@ import { asideOf } from '../core/alarm_actions.js';
 import { areaOf } from '../core/alarm_table.js';
 import { unitText, valueText, zoneClock } from '../core/format.js';
 import { hearAlarms, readJournal, sortJournal } from '../core/handover.js';
-import { ask } from '../core/history.js';
+import { askInTime } from '../core/history.js';
 import { Model } from '../core/model.js';
 import { whereText } from '../core/notes.js';
 import { language, learnWords, say } from '../core/words.js';
@@ -23,7 +23,7 @@ new BroadcastChannel('plantcast').onmessage = ({ data }) => { // clears this pag
     }
 };
 
-const get = async (path, args = {}) => (await ask(`api/v1/${path}`, args, token)).json();
+const get = (path, args = {}) => askInTime(`api/v1/${path}`, args, token);
 let clock = zoneClock('UTC');
 const timeOf = (us) => {
     const { date, time } = clock(us / 1000);

@@ -2,7 +2,7 @@
 // Drift of a sensor from its neighbours' prediction over a week, computed by the daemon from recorded readings (HTTP.md,
 // /api/v1/drift): a curve of the week on the sensor's card, and a list of drifting sensors.
 import { decimalsOf, numberText, unitText } from '../../core/format.js';
-import { ask } from '../../core/history.js';
+import { askInTime } from '../../core/history.js';
 import { say } from '../../core/words.js';
 
 const WIDTH = 168, HEIGHT = 28, AGAIN_MS = 600000;
@@ -16,8 +16,7 @@ export async function driftOf(session, query) {
         return [];
     if (known && Date.now() - known.at < AGAIN_MS)
         return known.rows;
-    const rows = await ask('api/v1/drift', query, session.token).then((answer) => answer.json()).then(({ sensors }) => sensors)
-        .catch(() => null);
+    const rows = await askInTime('api/v1/drift', query, session.token).then(({ sensors }) => sensors, () => null);
     if (rows)
         kept.set(key, { at: Date.now(), rows });
     return rows ?? [];

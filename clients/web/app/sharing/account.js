@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The account dialog: the user's role on the server, signing in through an identity provider, and signing out.
-import { ask } from '../../core/history.js';
+import { askInTime } from '../../core/history.js';
 import { say } from '../../core/words.js';
 import { make } from '../common/dom.js';
 import { store } from '../common/storage.js';
@@ -8,9 +8,7 @@ import { closeButton } from '../common/widgets.js';
 
 // Asks the server who the user is. Returns a promise of { name, role, signed_in, until, sign_in (label of the button to sign
 // in) }.
-export async function whoAmI(session) {
-    return (await ask('api/v1/me', {}, session.token)).json();
-}
+export const whoAmI = (session) => askInTime('api/v1/me', {}, session.token);
 
 // Makes a button that signs in at the identity provider and returns to the current view. It also discards any access token.
 export function signInButton(label) {

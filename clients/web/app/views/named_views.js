@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The list of saved views: opening a view and, for users with the right role, saving, reordering and restoring earlier
 // versions.
-import { ask } from '../../core/history.js';
+import { askInTime } from '../../core/history.js';
 import { engineersOf, idFor, isEngineers, regained, textOf, viewOf } from '../../core/named_views.js';
 import { zoneClock } from '../../core/format.js';
 import { refusalText } from '../../core/refusals.js';
@@ -172,8 +172,8 @@ export class NamedViews {
 
     async showBefore(id, title, list) {
         try {
-            const answer = await ask('api/v1/views', { id }, this.session.token);
-            const { before = [] } = (await answer.json()).list.find((view) => view.id === id) ?? {};
+            const { list: views } = await askInTime('api/v1/views', { id }, this.session.token);
+            const { before = [] } = views.find((view) => view.id === id) ?? {};
             const button = (text, onclick) => make('button', { type: 'button', onclick }, text);
             list.replaceChildren(...before.map((old) => make('li', {}, make('span', {}, this.when(old)),
                 button(say('named.look'), () => this.look(old.view)),
@@ -199,7 +199,8 @@ export class NamedViews {
             if (known && performance.now() - known.at < PICTURES_MS)
                 continue;
             try {
-                const url = URL.createObjectURL(await (await ask('snapshot.png', { view: id, ...PICTURE }, this.session.token)).blob());
+                const blob = await askInTime('snapshot.png', { view: id, ...PICTURE }, this.session.token, 'blob');
+                const url = URL.createObjectURL(blob);
                 if (known)
                     URL.revokeObjectURL(known.url);
                 this.pictures.set(text, { url, at: performance.now() });
