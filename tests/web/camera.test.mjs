@@ -88,6 +88,30 @@ test('looking around: the eye stays, and the point in the middle follows the poi
     assert.ok(valid(lookAround(toParallel(camera), dx, dy, 996)));
 });
 
+test('a plan with north at the top turns about the plant\'s vertical, and gets a level horizon once it is tilted', () => {
+    const plan = { eye: [1, 2, 90], target: [1, 2, 0], up: [0, 1, 0], fov: 45 }, up = [0, 0, 1];
+    const east = orbit(plan, 90, 0, plan.target, up);
+    closeTo(east.eye, plan.eye);
+    closeTo(east.up, [-1, 0, 0]);
+    const tilted = orbit(east, 0, -30, plan.target, up);
+    closeTo(tilted.up, up);
+    closeTo(basis(tilted).right, basis(east).right);
+    close(elevation(tilted, up), 60, 1e-6);
+    const slightly = orbit(plan, 0, -0.5, plan.target, up);
+    closeTo(basis(slightly).right, [1, 0, 0]);
+    assert.ok(slightly.up[1] > 0.99, 'near the vertical the plan keeps its north');
+    for (const one of [plan, toParallel(plan)]) {
+        const around = lookAround(one, 40, 0, 996, up);
+        close(elevation(around, up), 90, 1e-5);
+        assert.notDeepEqual(around.up, plan.up);
+        for (const point of [[4, 2, 0.5], [1, 2, 5]]) { // beside and above the middle of the box
+            const seen = face(one, point, { min: [-2, -2, 0], max: [4, 6, 1] }, 5, 20, up);
+            close(elevation(seen, up), 20, 1e-6);
+            closeTo(seen.up, up);
+        }
+    }
+});
+
 test('orbit works with Y up', () => {
     const lying = { eye: [10, 5, 10], target: [0, 0, 0], up: [0, 1, 0], fov: 40 };
     const turned = orbit(lying, 90, 0);

@@ -87,9 +87,10 @@ export const isRoom = ({ id, bounds }, assets) =>
     assets.some((other) => other.id !== id && isIn(other.bounds.min, bounds) && isIn(other.bounds.max, bounds));
 
 // Returns the cameras to try, in order, for a point on equipment with the bounds `box`. aspect: width of the picture divided by its height;
-// whole: bounds of the plant; solid true: leaves out cameras whose eye is within `box`, except the first camera.
-export function approaches({ camera, point, box, aspect, whole, solid }) {
-    const bounds = distanceBounds(whole), first = face(camera, point, box, approachDistance(box, bounds));
+// whole: bounds of the plant; solid true: leaves out cameras whose eye is within `box`, except the first camera; vertical: the plant's
+// upward direction.
+export function approaches({ camera, point, box, aspect, whole, solid, vertical = camera.up }) {
+    const bounds = distanceBounds(whole), first = face(camera, point, box, approachDistance(box, bounds), undefined, vertical);
     const all = TURNS.map(([azimuth, rise]) => nearer(orbit(first, azimuth, rise, point), box, aspect, bounds.least));
     const widest = Math.max(...all.slice(0, FRONT).map(distance));
     const shows = (side) => distance(side) >= NARROW * widest && silhouetteOf(side, box) >= EDGE;

@@ -58,29 +58,28 @@ export function fit(camera, box, aspect, margin = 1.08) {
 // Returns the distance in metres from the camera's eye to its target.
 export const distance = (camera) => length(subtract(camera.target, camera.eye));
 
-// Returns how many degrees the eye is above the target.
-export function elevation(camera) {
-    return Math.asin(Math.max(-1, Math.min(1, -dot(basis(camera).forward, unit(camera.up))))) / RADIANS;
+// Returns how many degrees the eye is above the target. vertical: the plant's upward direction.
+export function elevation(camera, vertical = camera.up) {
+    return Math.asin(Math.max(-1, Math.min(1, -dot(basis(camera).forward, unit(vertical))))) / RADIANS;
 }
 
-// Orbits about the vertical through `pivot`, then about the picture's horizontal axis, so the horizon stays level.
-export function orbit(camera, azimuthDeg, elevationDeg, pivot = camera.target) {
-    const vertical = unit(camera.up);
-    const before = elevation(camera);
+// Orbits about the vertical through `pivot`, then about the picture's horizontal axis. The horizon stays level. While a camera looks
+// straight down or up, as in a plan with north at the top, its `up` turns with the picture.
+export function orbit(camera, azimuthDeg, elevationDeg, pivot = camera.target, vertical = camera.up) {
+    const plumb = unit(vertical), before = elevation(camera, plumb), isSteep = (degrees) => Math.abs(degrees) > MAX_ELEVATION_DEG;
     const limit = Math.max(MAX_ELEVATION_DEG, Math.abs(before));
-    const tilt = Math.max(-limit, Math.min(limit, before + elevationDeg)) - before;
-    const right = basis(camera).right;
-    const move = (point) => {
-        const tilted = turn(subtract(point, pivot), right, -tilt * RADIANS);
-        return add(pivot, turn(tilted, vertical, azimuthDeg * RADIANS));
-    };
-    return validOr({ ...camera, eye: move(camera.eye), target: move(camera.target) }, camera);
+    const after = Math.max(-limit, Math.min(limit, before + elevationDeg));
+    const { right } = basis(isSteep(before) ? camera : { ...camera, up: plumb });
+    const swing = (v) => turn(turn(v, right, -(after - before) * RADIANS), plumb, azimuthDeg * RADIANS);
+    const move = (point) => add(pivot, swing(subtract(point, pivot)));
+    const up = isSteep(after) ? swing(unit(camera.up)) : vertical;
+    return validOr({ ...camera, eye: move(camera.eye), target: move(camera.target), up }, camera);
 }
 
 // Turns the view about the eye by the pointer's movement. An orthographic camera, whose eye has no meaning, orbits instead.
-export function lookAround(camera, dxPx, dyPx, heightPx) {
+export function lookAround(camera, dxPx, dyPx, heightPx, vertical = camera.up) {
     const degrees = (isParallel(camera) ? -USUAL_FOV : camera.fov) / heightPx;
-    return orbit(camera, dxPx * degrees, -dyPx * degrees, isParallel(camera) ? camera.target : camera.eye);
+    return orbit(camera, dxPx * degrees, -dyPx * degrees, isParallel(camera) ? camera.target : camera.eye, vertical);
 }
 
 // Returns the depth of a point: its distance along the viewing direction.
@@ -159,15 +158,15 @@ export function depthAt(camera, xPx, yPx, widthPx, heightPx, boxes) {
 }
 
 // Returns a camera that looks at a point of equipment from outside, slightly from above. The direction is the normal at that point of the
-// ellipsoid in the bounding box.
-export function face(camera, point, box, distanceM, elevationDeg = 20) {
-    const vertical = unit(camera.up), centre = middle(box.min, box.max);
+// ellipsoid in the bounding box. vertical: the plant's upward direction.
+export function face(camera, point, box, distanceM, elevationDeg = 20, vertical = camera.up) {
+    const plumb = unit(vertical), centre = middle(box.min, box.max), level = (v) => subtract(v, scale(plumb, dot(v, plumb)));
     const outwards = point.map((x, i) => (x - centre[i]) / Math.max(1e-6, (box.max[i] - box.min[i]) ** 2));
-    const level = subtract(outwards, scale(vertical, dot(outwards, vertical)));
-    const back = subtract(camera.eye, camera.target);
-    const direction = unit(length(level) > 1e-4 ? level : subtract(back, scale(vertical, dot(back, vertical))));
+    // fallbacks at the middle of the box: the direction to the eye, and if the camera looks straight down, the lower edge of the picture
+    const sides = [outwards, subtract(camera.eye, camera.target), scale(basis(camera).up, -1)].map(level);
+    const direction = unit(sides.find((side) => length(side) > 1e-4) ?? sides[1]);
     const tilt = elevationDeg * RADIANS;
-    const towards = add(scale(direction, Math.cos(tilt)), scale(vertical, Math.sin(tilt)));
+    const towards = add(scale(direction, Math.cos(tilt)), scale(plumb, Math.sin(tilt)));
     const lens = isParallel(camera) ? { height_m: 0.8 * distanceM } : {};
-    return validOr({ ...camera, ...lens, target: point, eye: along(point, towards, distanceM) }, camera);
+    return validOr({ ...camera, ...lens, target: point, eye: along(point, towards, distanceM), up: vertical }, camera);
 }

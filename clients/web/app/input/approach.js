@@ -74,7 +74,7 @@ export class Approach {
         // id of the tag's asset, which the eye must not enter; null: the asset is a room, which it may enter
         const solid = isRoom(asset, model.assets) ? null : asset.id;
         const cameras = approaches({ camera: now, point: tag.position, box: asset.bounds, aspect: width / this.viewport.height,
-            whole: model.plant.bounds, solid: solid !== null });
+            whole: model.plant.bounds, solid: solid !== null, vertical: model.plant.up });
         fly(cameras[0]);
         const behind = [], own = []; // cameras whose view of the tag is blocked. behind: by another asset; own: by the tag's own asset
         // deadline, after which the best view found so far is used, for example on a slow network

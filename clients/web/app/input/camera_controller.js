@@ -191,11 +191,11 @@ export class CameraController {
         for (const move of moves) {
             if (move.orbit)
                 camera = orbit(camera, (-move.orbit[0] * DEGREES_PER_HEIGHT) / height, (move.orbit[1] * DEGREES_PER_HEIGHT) / height,
-                    this.anchor?.point ?? camera.target);
+                    this.anchor?.point ?? camera.target, this.vertical);
             if (move.look)
-                camera = lookAround(camera, move.look[0], move.look[1], height);
+                camera = lookAround(camera, move.look[0], move.look[1], height, this.vertical);
             if (move.orbitDeg)
-                camera = orbit(camera, move.orbitDeg[0], move.orbitDeg[1]);
+                camera = orbit(camera, move.orbitDeg[0], move.orbitDeg[1], camera.target, this.vertical);
             if (move.pan)
                 camera = pan(camera, move.pan[0], move.pan[1], height, this.heldDepth(camera));
             if (move.panHeights)
@@ -204,6 +204,11 @@ export class CameraController {
                 camera = this.zoomed(camera, move.zoom, move.at ?? [width / 2, height / 2]);
         }
         this.session.setCamera(camera, clock.of(time));
+    }
+
+    // The plant's upward direction; undefined before the first `welcome`. In a plan with north at the top, a camera's own `up` is north.
+    get vertical() {
+        return this.session.model?.plant.up;
     }
 
     zoomed(camera, factor, [x, y]) {
@@ -301,9 +306,8 @@ export class CameraController {
     }
 
     flyToBox(box, margin = USUAL_MARGIN) {
-        const camera = this.session.camera;
-        const rise = Math.max(0, LEAST_ARRIVAL_DEG - elevation(camera));
-        this.fitted = { from: orbit(camera, 0, rise), box, margin };
+        const { vertical, session: { camera } } = this, rise = Math.max(0, LEAST_ARRIVAL_DEG - elevation(camera, vertical));
+        this.fitted = { from: orbit(camera, 0, rise, camera.target, vertical), box, margin };
         this.flyTo(this.refit());
     }
 
