@@ -115,7 +115,7 @@ static void convert(struct import_command *import, const char *path)
         }
         model->item_level = format->reader == FORMAT_RVM ? RVM_ITEM_LEVEL : 0;
         struct text summary = { 0 };
-        model_outline_summary(&model->outline, format->unitless ? findings_guessed_m(findings) : 0, &summary);
+        model_outline_summary(&model->outline, findings_guessed_m(findings), &summary);
         findings_print(path, summary.at, stdout);
         findings_print(path, plain.at, stdout);
         text_finish(&summary);

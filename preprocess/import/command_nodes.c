@@ -56,7 +56,7 @@ static bool read_model(const char *path, const struct conversion_params *params,
         fprintf(stderr, "plantcast nodes: %s: %s\n", path, why);
     struct text plain = { 0 };
     json_t *findings = findings_read(path, said.at ? said.at : "", NULL, &plain);
-    *guessed_m = format && format->unitless ? findings_guessed_m(findings) : 0;
+    *guessed_m = findings_guessed_m(findings);
     if (good)
         findings_print(path, plain.at, stderr);
     json_decref(findings);

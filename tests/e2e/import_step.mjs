@@ -160,6 +160,20 @@ test('parts in other files are found despite case, folders and escapes in their 
             text: 'the model refers to file gone.stp, which is not in the model\'s folder, so its parts are not shown' }]);
     }));
 
+test('a STEP file that states no unit of length is reported', { skip }, () => withSamples((folder) => {
+    const bare = without(without(cone(), 11), 12).replace('GLOBAL_UNCERTAINTY_ASSIGNED_CONTEXT((#11))', '').replace('((#12,', '((');
+    const text = 'the file states no unit of length for some or all shapes: ' +
+        'assuming mm; if that is wrong, state the unit in the CAD program and export the model again';
+    writeFileSync(join(folder, 'bare.stp'), bare);
+    const { size, errors } = imported(folder, 'bare.stp');
+    assert.ok(near(size, [0.0234, 0.0902, 0.0902]), JSON.stringify(size));
+    assert.deepEqual(errors, [{ count: 1, text }]);
+    writeFileSync(join(folder, 'line.stp'), assembly(['bare.stp']));
+    assert.deepEqual(imported(folder, 'line.stp').errors, [{ count: 1, text: `bare.stp: ${text}` }]);
+    writeFileSync(join(folder, 'cone.stp'), cone());
+    assert.deepEqual(imported(folder, 'cone.stp').errors, []);
+}));
+
 // Removes one statement of each kind from a STEP file. The import must report what is missing, or refuse the file with one
 // line, also where Open CASCADE crashes. It must never lose surface silently.
 test('STEP: no kind of damage removes surface without a report', { skip }, () => withSamples((folder) => {

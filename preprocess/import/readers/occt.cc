@@ -302,6 +302,26 @@ bool has_ending(const char *path, const char *ending)
     return length > count && !strcasecmp(path + length - count, ending);
 }
 
+/* Returns the length units of a STEP file. Prints an error if a shape has none: Open CASCADE then takes it to be in millimetres.
+ * named: name of the file for the error, or "". */
+std::string length_units(STEPControl_Reader *reader, const std::string &named)
+{
+    TColStd_SequenceOfAsciiString lengths, angles, solid_angles;
+    std::string units;
+    reader->FileUnits(lengths, angles, solid_angles);
+    bool missing = lengths.IsEmpty();
+    for (int i = 1; i <= lengths.Length(); i++) {
+        missing = missing || lengths.Value(i).IsEmpty();
+        if (units.find(lengths.Value(i).ToCString()) == std::string::npos)
+            units += (units.empty() ? "" : ", ") + std::string(lengths.Value(i).ToCString());
+    }
+    if (missing)
+        printf("error\t1\t%sthe file states no unit of length for some or all shapes: assuming mm; if that is wrong, state the unit in "
+               "the CAD program and export the model again\n",
+               named.c_str());
+    return units;
+}
+
 /* Reads a STEP file into the XCAF document. Returns the file's length units. */
 std::string read_step(const char *path, const char *output, Handle(TDocStd_Document) document, const char *asked,
                       std::map<std::string, step_external> *externals)
@@ -313,15 +333,17 @@ std::string read_step(const char *path, const char *output, Handle(TDocStd_Docum
     step.SetLayerMode(Standard_True);
     if (step.ReadFile(files.main.c_str()) != IFSelect_RetDone)
         refuse("this is not a STEP file, or the file is truncated");
-    TColStd_SequenceOfAsciiString lengths, angles, solid_angles;
-    step.ChangeReader().FileUnits(lengths, angles, solid_angles);
+    const std::string units = length_units(&step.ChangeReader(), "");
     bool transferred = step.Transfer(document);
     occt_losses_say(step.Reader().WS(), "");
     for (NCollection_DataMap<TCollection_AsciiString, Handle(STEPCAFControl_ExternFile)>::Iterator each(step.ExternFiles()); each.More();
          each.Next()) {
         auto file = files.externals.find(each.Key().ToCString());
-        if (file != files.externals.end() && !each.Value()->GetWS().IsNull() && each.Value()->GetLoadStatus() == IFSelect_RetDone)
+        if (file != files.externals.end() && !each.Value()->GetWS().IsNull() && each.Value()->GetLoadStatus() == IFSelect_RetDone) {
             occt_losses_say(each.Value()->GetWS(), file->second.named + ": ");
+            STEPControl_Reader part(each.Value()->GetWS(), Standard_False); /* forgets the part's losses */
+            length_units(&part, one_line(file->second.named) + ": ");
+        }
     }
     for (const std::string &copy : files.copies)
         remove(copy.c_str());
@@ -332,10 +354,6 @@ std::string read_step(const char *path, const char *output, Handle(TDocStd_Docum
     *externals = files.externals;
     if (!transferred)
         refuse("Open CASCADE could not read the shapes in the CAD file: export the model again");
-    std::string units;
-    for (int i = 1; i <= lengths.Length(); i++)
-        if (units.find(lengths.Value(i).ToCString()) == std::string::npos)
-            units += (units.empty() ? "" : ", ") + std::string(lengths.Value(i).ToCString());
     return units;
 }
 
