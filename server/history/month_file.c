@@ -80,6 +80,7 @@ static const char *const sql[SQL_COUNT] = {
     [SQL_ROLLUPS] = "SELECT t, low, high, mean, first, last, good_us, bad_us, q FROM rollup"
                     " WHERE level_s = ?1 AND tag = ?2 AND t <= ?4 AND t >= coalesce((SELECT max(t) FROM rollup"
                     " WHERE level_s = ?1 AND tag = ?2 AND t <= ?3), ?3) ORDER BY t",
+    [SQL_NEWEST_ROLLUP] = "SELECT max(t) FROM rollup WHERE level_s = ? AND tag = ?",
     [SQL_RECENT_ALL] = "SELECT tag, t, v, q FROM recent",
     [SQL_ALL_TAGS] = "SELECT id FROM tag",
     [SQL_CUT_SAMPLES] = "DELETE FROM sample WHERE tag = ? AND t < ?",

@@ -290,14 +290,31 @@ static int find_before(struct month_file *file, int64_t id, int64_t t_us, struct
     return error;
 }
 
-/* Restores a tag's incomplete rollup buckets in memory from the points that the previous writer left in the file. */
+/* Finds the end of the tag's newest rollup bucket of an hour; the beginning of the month if there is none. */
+static int find_rolled(struct month_file *file, int64_t id, int64_t *end_us)
+{
+    sqlite3_stmt *newest = month_sql(file, SQL_NEWEST_ROLLUP);
+    sqlite3_bind_int64(newest, 1, history_level_us[LEVEL_1_H] / US_PER_S);
+    sqlite3_bind_int64(newest, 2, id);
+    int code = database_step(&file->db, newest);
+    bool has = code == SQLITE_ROW && sqlite3_column_type(newest, 0) != SQLITE_NULL;
+    *end_us = has ? sqlite3_column_int64(newest, 0) + history_level_us[LEVEL_1_H] : month_begin_us(file->month);
+    sqlite3_reset(newest);
+    return database_fail(&file->db, code, "cannot be read");
+}
+
+/* Restores a tag's incomplete rollup buckets in memory from the points that the previous writer left in the file. Also writes complete
+   buckets that are missing, because a handle of a plant without this tag moved its points (move_tag()). */
 static int load_rollups(struct month_file *file, int tag, int64_t id)
 {
     struct month_rollups *rollups = &file->rollups[tag];
     struct history_point last;
+    int64_t from_us;
     reset_rollups(rollups, file->tags[tag].step);
     int error = find_before(file, id, INT64_MAX, &last);
-    return error || last.t_us == INT64_MIN ? error : roll_from(file, id, last.t_us, rollups);
+    if (error || last.t_us == INT64_MIN || (error = find_rolled(file, id, &from_us)))
+        return error;
+    return roll_from(file, id, from_us < last.t_us ? from_us : last.t_us, rollups);
 }
 
 static int roll_point(struct month_file *file, int tag, int64_t id, const struct history_point *point)
@@ -336,8 +353,8 @@ static int share_times(struct month_file *file, const struct month_row *rows, si
     return month_chunk_store(file, chunk);
 }
 
-/* Writes one tag's newest points to blocks and updates its rollups. tag -1: the plant no longer has the tag, so no rollups are
-   computed. `points` is a scratch buffer. */
+/* Writes one tag's newest points to blocks and updates its rollups. tag -1: the plant of this handle does not have the tag, so no
+   rollups are computed. `points` is a scratch buffer. */
 static int move_tag(struct month_file *file, int tag, const struct month_chunk *chunk, const struct month_row *rows, size_t count,
                     struct history_points *points)
 {

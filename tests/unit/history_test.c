@@ -545,6 +545,36 @@ CASE(an_import_by_another_handle_keeps_rollups_right)
     mem_free(hours.buckets.at);
 }
 
+/* Another process imports points for a plant that lacks TT-1, and so moves points of TT-1 without rolling them up. */
+CASE(an_import_for_another_plant_keeps_rollups_right)
+{
+    int error;
+    struct month_buckets hours = { 0 };
+    struct month_file *file = open_file(s, NOVEMBER);
+    struct month_file *other = month_file_open(s->log, s->folder, month_of(NOVEMBER), s->tags + 1, 1, &error);
+    assert_non_null(other);
+    for (int minute = 0; minute < 150; minute++) {
+        struct history_row row = { 0, { NOVEMBER + minute * 60 * S, minute == 55 ? 99 : minute % 2, QUALITY_GOOD } };
+        assert_int_equal(month_file_write(file, &row, 1, NULL, 0), 0);
+        if (minute == 65)
+            assert_int_equal(month_file_import(other, 0, &(struct history_point){ NOVEMBER, 1, QUALITY_GOOD }, 1), 0);
+        if (minute % 20 == 10)
+            assert_int_equal(month_file_tidy(file), 0);
+    }
+    assert_int_equal(month_file_tidy(file), 0);
+    month_file_close(&other);
+    month_file_close(&file);
+    file = month_file_read(s->log, s->folder, month_of(NOVEMBER), &error);
+    assert_int_equal(month_file_buckets(file, "TT-1", LEVEL_1_H, NOVEMBER, NOVEMBER + 3600 * S, &hours), 0);
+    assert_int_equal(hours.buckets.count, 2);
+    assert_true(hours.buckets.at[0].high == 99 && hours.buckets.at[1].high == 1);
+    hours.buckets.count = 0;
+    assert_int_equal(month_file_buckets(file, "TT-1", LEVEL_1_MIN, NOVEMBER, NOVEMBER + 149 * 60 * S, &hours), 0);
+    assert_int_equal(hours.buckets.count, 149);
+    month_file_close(&file);
+    mem_free(hours.buckets.at);
+}
+
 static sqlite3 *open_database(const char *path)
 {
     sqlite3 *db;
