@@ -85,13 +85,15 @@ test('the distance between two points is measured', options, async () => {
 });
 
 test('an arrow key turns a plan with north at the top about the plant\'s vertical', options, async () => {
-    const plan = { eye: [0.3, 0, 9], target: [0.3, 0, 0], up: [0, 1, 0], fov: 30 };
-    await page.evaluate((camera) => globalThis.plantcast.session.setCamera(camera), plan);
+    const plan = { eye: [0.3, 0, 9], target: [0.3, 0, 0], up: [0, 1, 0], fov: 30 }, { camera: before } = await view(page);
+    const show = (one) => page.evaluate((camera) => globalThis.plantcast.session.setCamera(camera), one);
+    await show(plan);
     await page.keyboard.press('ArrowRight');
     await page.waitForFunction(() => globalThis.plantcast.session.camera.up[1] < 1);
     const { eye, target, up } = await page.evaluate(() => globalThis.plantcast.session.camera);
     assert.ok([...eye, ...target].every((m, i) => Math.abs(m - [...plan.eye, ...plan.target][i]) < 1e-6), `the eye moved to ${eye}`);
     assert.ok(Math.abs(up[2]) < 1e-6 && up[1] > 0, `${up} is horizontal`);
+    await show(before);
     await settle(page);
 });
 
