@@ -36,7 +36,7 @@ test('a view has colour bands only if its text has them, because new views have 
     for (const breaks of [null, [20, 50]]) {
         session.setParams({ group: group.id, breaks });
         assert.deepEqual(viewOf(session, textOf(session)).params.breaks, breaks);
-        assert.deepEqual(newView(session, group.id).breaks, null);
+        assert.deepEqual(newView(session, { group: group.id }).breaks, null);
     }
 });
 
@@ -51,7 +51,7 @@ test('a view that names no interpolation gets the one that the server selects fo
         assert.deepEqual([chosen(''), chosen('show=uncertainty'), chosen('show=operator'), chosen('show=operator&interpolation=paper')],
             [interpolation, uncertainty, operator, 'paper']);
         session.model.plant.show = 'operator';
-        assert.equal(newView(session, id).interpolation, operator, 'the picture of an alarm');
+        assert.equal(newView(session, { group: id }).interpolation, operator, 'the picture of an alarm');
     }
 });
 
@@ -62,7 +62,7 @@ test('a view without group, colour map or environment has those of a new view, w
     assert.deepEqual(shown(viewOf(session, 'look=flat').params), [first.id, model.colormaps[0].name, 'sky']);
     model.environments = ['sky', 'hall'];
     assert.deepEqual(shown(viewOf(session, `group=${other.id}`).params), [other.id, model.colormaps[0].name, 'hall']);
-    assert.deepEqual(shown(newView(session, null)), [other.id, model.colormaps[0].name, 'hall'], 'a tag without group keeps the group');
+    assert.deepEqual(shown(newView(session, { group: null })), [other.id, model.colormaps[0].name, 'hall'], 'a tag without group keeps the group');
     assert.equal(viewOf(session, 'show=difference&baseline=b').params.colormap, 'diverging');
 });
 
@@ -71,11 +71,11 @@ test('a viewer\'s new view has no engineer-only parameters of the view before it
     const views = [{ id: 'saved', view: 'look=flat' }, { id: 'far', view: 'reach=1', fixed: true },
         { id: 'lost', view: 'group=x', wrong: 'x', fixed: true }, { id: 'home', view: 'look=flat', fixed: true }];
     say({ type: 'views', list: views });
-    assert.equal(newView(session, id).named, undefined, 'all parameters have their default values');
+    assert.equal(newView(session, { group: id }).named, undefined, 'all parameters have their default values');
     session.params = { ...session.params, reach_m: 0.1 };
-    assert.deepEqual([newView(session, id).named, newView(session, id).group], ['home', id]);
+    assert.deepEqual([newView(session, { group: id }).named, newView(session, { group: id }).group], ['home', id]);
     session.role = 'engineer';
-    assert.deepEqual([newView(session, id).named, newView(session, id).reach_m], [undefined, null]);
+    assert.deepEqual([newView(session, { group: id }).named, newView(session, { group: id }).reach_m], [undefined, null]);
 });
 
 test('a saved view shows the quantity, isolines and directions with which it was saved', () => {
@@ -98,24 +98,28 @@ test('a saved view shows the quantity, isolines and directions with which it was
         assert.deepEqual([other.scale, other.breaks], [scale, null], 'scale and breaks of the group are for values');
     }
     session.setParams({ look: 'materials' });
-    assert.equal(newView(session, group.id).look, 'default', 'a new view shows readings');
+    assert.equal(newView(session, { group: group.id }).look, 'default', 'a new view shows readings');
     session.model.plant.show = 'operator';
     assert.equal(viewOf(session, 'look=flat').params.show, 'operator', 'the initial quantity of the plant');
 });
 
-test('a new view of a group shows readings and all equipment, whatever was shown before', () => {
+test('a new view of a tag shows readings and the tag\'s equipment, whatever was shown before', () => {
     const { session } = greeted('viewer'), [, other] = session.model.groups;
     session.setParams({ show: 'blind', isolate: ['E-101'], clip: { planes: [[0, 0, 1, 0]] }, split: {}, range: [1, 2] });
-    const { group, show, isolate, hidden, clip, split, range } = newView(session, other.id);
+    const { group, show, isolate, hidden, clip, split, range } = newView(session, { group: other.id });
     assert.deepEqual([group, show, isolate, hidden, clip, split, range],
         [other.id, 'value', [], session.model.start.hidden, null, null, null]);
+    session.model.start = { hidden: ['E-101', 'P-101A'], isolate: [], ghost: ['E-101'] };
+    const { hidden: left, ghost } = newView(session, { group: other.id, asset: 'E-101' });
+    assert.deepEqual([left, ghost], [['P-101A'], []], 'equipment that new views hide is shown if it has the tag');
 });
 
 test('a viewer takes the parameters of the field from the saved view', () => {
     const { params } = viewOf(greeted('viewer').session, 'strength=2&power=3', 'own');
     assert.deepEqual([params.strength, params.power, params.sensors, params.named], [undefined, undefined, undefined, 'own']);
     assert.equal(viewOf(greeted('viewer').session, 'strength=2').params.named, undefined);
-    assert.equal(viewOf(greeted('engineer').session, 'strength=2', 'own').params.strength, 2);
+    for (const role of ['engineer', undefined]) // a server that sends no role permits all parameters
+        assert.equal(viewOf(greeted(role).session, 'strength=2', 'own').params.strength, 2);
 });
 
 test('after a reload or a reconnect, a viewer takes the field\'s parameters from the saved view again', () => {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Saved views: converts between a view's text, a session's state, and the query for a picture of the view.
 import { addressOf, readAddress } from './address.js';
-import { ENGINEERS, withoutEngineers } from './session.js';
+import { ENGINEERS, maySendAll, withoutEngineers } from './session.js';
 
 const ID_CHARS = 48;
 
@@ -37,19 +37,21 @@ export function viewOf(session, text, id) {
         range: null, ramp_interval: 0, breaks: null, split: null, selected: null, clip: null, sensors: null };
     if (show !== 'value') // isolines and scale of the group are for values
         Object.assign(plain, { isolines: [], scale: show === 'blind' ? 'log' : 'linear' });
-    const all = { ...plain, ...params }, isEngineer = session.role === 'engineer';
-    const sent = isEngineer ? all : { ...withoutEngineers(all), ...(id ? { named: id } : {}) };
+    const all = { ...plain, ...params };
+    const sent = maySendAll(session.role) ? all : { ...withoutEngineers(all), ...(id ? { named: id } : {}) };
     const { width, height, pixel_ratio: ratio = 1 } = session.size;
     return { camera: camera ?? session.homeIn(width / ratio, height / ratio), params: sent, tag };
 }
 
-// Returns the parameters of a new view of a sensor group. group null: the group that is shown. Users other than engineers cannot send
-// default values of engineer-only parameters. Such users get these values from a view of the plant file that has default values.
-export function newView(session, group) {
+// Returns the parameters of a new view of a tag's group, in which the tag's equipment is visible. tag.group null: the group that is shown.
+// Users other than engineers cannot send default values of engineer-only parameters. Such users get these values from a view of the plant
+// file that has default values.
+export function newView(session, { group, asset }) {
     const id = group ?? session.params.group, { params } = viewOf(session, id ? `group=${encodeURIComponent(id)}` : '');
-    const usual = session.role === 'engineer' || engineersOf(session) === null ? null
+    const [hidden, ghost] = [params.hidden, params.ghost].map((ids) => ids.filter((one) => one !== asset));
+    const usual = maySendAll(session.role) || engineersOf(session) === null ? null
         : session.views.find(({ fixed, wrong, view }) => fixed && !wrong && !isEngineers(view));
-    return { ...params, ...(usual ? { named: usual.id } : {}) };
+    return { ...params, hidden, ghost, ...(usual ? { named: usual.id } : {}) };
 }
 
 // Returns true if a view has engineer-only parameters.

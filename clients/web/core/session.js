@@ -15,6 +15,10 @@ const SAID = [...PARAMS, 'sensor', 'baseline', 'baselines', 'sensors', 'unit']; 
 // Parameters that only engineers may send. The build copies this list into the server, from the following line.
 export const ENGINEERS = ['fill', 'strength', 'decay', 'power', 'radius_m', 'reach_m', 'sensors'];
 export const withoutEngineers = (params) => Object.fromEntries(Object.entries(params).filter(([name]) => !ENGINEERS.includes(name)));
+// maySendAll() returns true if a role may send all parameters; a server that sends no role permits all. sendable() leaves out those that
+// the role may not send.
+export const maySendAll = (role) => !role || role === 'engineer';
+export const sendable = (params, role) => (maySendAll(role) ? params : withoutEngineers(params));
 // parameters shared by both halves of a split view
 const SHARED = ['light', 'environment', 'backdrop', 'arrows', 'selected', 'hidden', 'isolate', 'ghost', 'clip', 'split'];
 // parameters with lists of assets: an empty list is sent, too, because the default list of the plant file may not be empty
@@ -227,13 +231,12 @@ export class Session {
     // plant's defaults may have changed. baseline false: leaves out the baseline (saved readings to compare with), which the
     // server may have lost.
     carried({ baseline = true } = {}) {
-        const { params, ownParams: own } = this;
-        const may = (name) => !this.role || this.role === 'engineer' || !ENGINEERS.includes(name);
-        const wanted = pick(params, PARAMS.filter((name) => may(name) && JSON.stringify(params[name]) !== JSON.stringify(own[name])));
-        if (may('sensors') && Object.keys(params.sensors ?? {}).length > 0)
+        const { ownParams: own } = this, params = sendable(this.params, this.role);
+        const wanted = pick(params, PARAMS.filter((name) => JSON.stringify(params[name]) !== JSON.stringify(own[name])));
+        if (Object.keys(params.sensors ?? {}).length > 0)
             wanted.sensors = params.sensors;
         if (wanted.split)
-            wanted.split = pick(wanted.split, PARAMS.filter((name) => may(name) && !SHARED.includes(name)));
+            wanted.split = pick(sendable(wanted.split, this.role), PARAMS.filter((name) => !SHARED.includes(name)));
         if (wanted.show === 'distance')
             wanted.sensor = params.sensor;
         if (wanted.show === 'difference' && baseline && params.baseline?.name)
@@ -281,7 +284,7 @@ export class Session {
         this.asked.set(seq, params);
     }
 
-    // Keeps these parameters for the picture on the screen: gives it the number -1, which the server never sends.
+    // Marks the picture on the screen as showing these parameters, under the number -1, which the server never sends.
     keepShown(params) {
         this.remember(-1, params);
         this.picture.paramsSeq = -1;

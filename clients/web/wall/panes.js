@@ -149,7 +149,7 @@ function ViewsPane(pane, context) {
     function showAlarm(page, alarm) {
         const tag = page.session.model.tag(alarm.tag.name);
         // the parameters of a new view: those of the pane's view could hide the equipment, or not show readings
-        page.session.setParams(newView(page.session, tag.group));
+        page.session.setParams(newView(page.session, tag));
         page.flyToTag(tag);
         setVariable(element, '--called', `var(--p${alarm.priority})`);
         due = null;

@@ -100,7 +100,7 @@ export function tileOf(pane, { session: words, call, wall, display, streamUrl })
             return;
         if (alarm) {
             // the parameters of a new view: those of the pane's view could hide the equipment, or not show readings
-            session.setParams(newView(session, tag.group));
+            session.setParams(newView(session, tag));
             session.post({ type: 'fit', seq: ++session.fitSeq, id: tag.name });
         } else if (order?.view || view) {
             look(order?.view || view.view, order?.view ? undefined : view.id);

@@ -5,7 +5,7 @@ import { addressOf } from '../../core/address.js';
 import { same } from '../../core/camera.js';
 import { fieldInstant, fieldText } from '../../core/instant.js';
 import { travel } from '../../core/requests.js';
-import { PARAMS, withoutEngineers } from '../../core/session.js';
+import { PARAMS, sendable } from '../../core/session.js';
 import { say } from '../../core/words.js';
 import { fillSelect } from '../common/choices.js';
 import { byId, icon, make, setText } from '../common/dom.js';
@@ -13,28 +13,28 @@ import { keepPanelsAbove } from './bar_top.js';
 
 const AGO_S = [3600, 8 * 3600, 86400, 7 * 86400], FIRST_S = 86400, TICK_MS = 250, HOUR_S = 3600;
 const SAME_US = 60e6; // largest deviation from the chosen span between the halves' instants
-const SHARED = [...PARAMS.filter((name) => !['split', 'backdrop'].includes(name)), 'sensor', 'sensors', 'baseline'];
-const COLOURS = ['colormap', 'ramp_interval', 'range', 'scale', 'breaks', 'isolines'];
+// names of the parameters that the right half gets
+const SENT = [...PARAMS.filter((name) => !['split', 'backdrop'].includes(name)), 'sensor', 'sensors', 'baseline'];
+const COLOUR_PARAMS = ['colormap', 'ramp_interval', 'range', 'scale', 'breaks', 'isolines'];
 const isSame = (a, b) => JSON.stringify(a) === JSON.stringify(b);
 
-// Returns the parameters that the right half has, too. Readings that were saved without a name exist only in the left half's session: the
-// right half then shows values instead of differences, in colours for values.
-function shareable(params) {
+// Replaces differences from an unnamed baseline by values in default colours: such a baseline exists only in the left half's session.
+function withoutUnnamedBaseline(params) {
     if (params.show !== 'difference' || params.baseline?.name)
         return params;
-    const others = Object.entries(params).filter(([name]) => !COLOURS.includes(name));
+    const others = Object.entries(params).filter(([name]) => !COLOUR_PARAMS.includes(name));
     return { ...Object.fromEntries(others), show: 'value', baseline: null };
 }
 
-function sharedOf(params, role) {
-    const all = { ...shareable(params), baseline: params.baseline?.name ?? null };
-    const may = !role || role === 'engineer' ? all : withoutEngineers(all);
-    return Object.fromEntries(SHARED.filter((name) => name in may).map((name) => [name, may[name] ?? null]));
+// Returns the parameters to send to the right half: all of SENT that the user's role may set; null: removed.
+function paramsForRight(params, role) {
+    const may = sendable({ ...withoutUnnamedBaseline(params), baseline: params.baseline?.name ?? null }, role);
+    return Object.fromEntries(SENT.filter((name) => name in may).map((name) => [name, may[name] ?? null]));
 }
 
 // Returns the changed factors of single sensors; a sensor whose factors were removed has null.
-const changedSensors = (now, told) => Object.fromEntries([...new Set(Object.keys({ ...told, ...now }))]
-    .filter((tag) => !isSame(now?.[tag], told?.[tag])).map((tag) => [tag, now?.[tag] ?? null]));
+const changedSensors = (now, sent) => Object.fromEntries([...new Set(Object.keys({ ...sent, ...now }))]
+    .filter((tag) => !isSame(now?.[tag], sent?.[tag])).map((tag) => [tag, now?.[tag] ?? null]));
 
 export class Compare {
     constructor(page) {
@@ -79,7 +79,7 @@ export class Compare {
         const choices = [['', say('compare.chosen')], ['now', say('time.now')], ...AGO_S.map((s) => [String(s),
             say('compare.earlier', { span: say(s < 86400 ? 'age.h' : 'age.d', { n: s / (s < 86400 ? HOUR_S : 86400) }) })])];
         fillSelect(this.ago, choices, this.atUs === null ? 'now' : '');
-        const time = { atUs: this.atUs }, { camera, ownParams, named } = session, params = shareable(session.params);
+        const time = { atUs: this.atUs }, { camera, ownParams, named } = session, params = withoutUnnamedBaseline(session.params);
         const query = new URLSearchParams(location.search);
         query.set('theme', document.documentElement.dataset.theme);
         query.set('pane', 'compare');
@@ -113,7 +113,7 @@ export class Compare {
         // this page states refusals, because the embedded page has no room for messages
         page.session.on('error', (message) => this.frame && this.session.emit('error', message));
         Object.assign(page.handlers, { command: this.page.handlers.command, group: this.page.handlers.group });
-        this.told = null;
+        this.sentParams = null;
         this.tellCamera();
         this.tellParams();
     }
@@ -140,12 +140,12 @@ export class Compare {
         const { params, role } = this.session, { show, baseline } = params;
         if (show === 'difference' && baseline && !baseline.time_us)
             return; // the server has not confirmed yet which readings the left half is compared with
-        const now = sharedOf(params, role), told = this.told ?? sharedOf(this.other.params, role);
-        const changed = Object.entries(now).filter(([name, value]) => !isSame(value, told[name]));
-        this.told = now;
+        const now = paramsForRight(params, role), sent = this.sentParams ?? paramsForRight(this.other.params, role);
+        const changed = Object.entries(now).filter(([name, value]) => !isSame(value, sent[name]));
+        this.sentParams = now;
         if (changed.length > 0)
             this.other.setParams(Object.fromEntries(changed.map(([name, value]) =>
-                [name, name === 'sensors' ? changedSensors(value, told.sensors) : value])));
+                [name, name === 'sensors' ? changedSensors(value, sent.sensors) : value])));
     }
 
     choose() {

@@ -3,8 +3,9 @@
 // versions.
 import { askInTime } from '../../core/history.js';
 import { engineersOf, idFor, isEngineers, regained, textOf, viewOf } from '../../core/named_views.js';
-import { zoneClock } from '../../core/format.js';
+import { dateTime, zoneClock } from '../../core/format.js';
 import { refusalText } from '../../core/refusals.js';
+import { maySendAll } from '../../core/session.js';
 import { say } from '../../core/words.js';
 import { byId, make, setText } from '../common/dom.js';
 
@@ -88,7 +89,7 @@ export class NamedViews {
 
     look(text, fly = true, id = undefined) {
         const { session, modules } = this, { camera, params, tag } = viewOf(session, text, id), found = session.model.tag(tag);
-        this.remember(id && session.role !== 'engineer' && isEngineers(text) ? id : null);
+        this.remember(id && !maySendAll(session.role) && isEngineers(text) ? id : null);
         session.setParams(params);
         if (!fly) {
             modules.there('cameraController')?.land(); // ends a running flight
@@ -166,8 +167,7 @@ export class NamedViews {
     }
 
     when({ by, time_us: us }) {
-        const { date, time } = zoneClock(this.session.model.plant.time_zone)(us / 1000);
-        return say('named.by', { who: by, time: `${date} ${time.slice(0, 5)}` });
+        return say('named.by', { who: by, time: dateTime(zoneClock(this.session.model.plant.time_zone), us / 1000) });
     }
 
     async showBefore(id, title, list) {
