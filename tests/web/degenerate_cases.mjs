@@ -229,6 +229,7 @@ for (const name of ['numberText', 'shortNumberText', 'changeText'])
 add('format', 'decimalsOf', [{ min: 0.1, max: 1000, scale: 'log' }, 12], ENDS);
 add('format', 'valueText', [{ min: 0.1, max: 1000, scale: 'log' }, 12], ENDS);
 add('format', 'dayTime', [1e12], { ends: true, call: (ms) => format.dayTime(format.zoneClock('UTC'), ms) });
+add('format', 'dateTime', [1e12], { ends: true, call: (ms) => format.dateTime(format.zoneClock('UTC'), ms) });
 add('format', 'timeOrDay', [1e12, 1.1e12], { ends: true, call: (...instants) => format.timeOrDay(format.zoneClock('UTC'), ...instants) });
 add('format', 'zoneClock', ['Europe/Berlin', 1e12], { ends: true, call: (zone, ms) => format.zoneClock(zone)(ms) });
 add('instant', 'fieldText', [1e15, 'Europe/Berlin'], ENDS);

@@ -346,7 +346,7 @@ test('the right half of two times gets the sensor, the factors and the baseline 
         split: null, strength: 1 };
     const sent = [], other = { welcomed: true, picture: {}, params: first, setParams: (change) => sent.push(change) };
     const compare = Object.assign(Object.create(Compare.prototype), { session: { params: first, role: 'engineer' }, connected: {},
-        told: null, frame: { contentWindow: { plantcast: { session: other } } } });
+        sentParams: null, frame: { contentWindow: { plantcast: { session: other } } } });
     const tells = (change) => {
         compare.session.params = { ...compare.session.params, ...change };
         sent.length = 0;

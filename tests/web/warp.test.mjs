@@ -397,7 +397,7 @@ test('a picture is loaded before the camera moves only while a pointer is presse
     const draws = () => [warp.draw(), loaded.length];
     try {
         assert.deepEqual(draws(), [false, 0], 'a still view costs nothing');
-        assert.deepEqual([gestures.mouse(now), gestures.mouse(now)], [true, false], 'only the first event starts an animation frame');
+        assert.deepEqual([gestures.hover(now), gestures.hover(now)], [true, false], 'only the first event starts an animation frame');
         assert.deepEqual(draws(), [false, 1]);
         now += 4999;
         assert.deepEqual(draws(), [false, 2]);

@@ -13,8 +13,9 @@ const CHOICES = {
     look : [ 'default', 'glossy', 'flat', 'materials' ],
     fill : [ 'none', 'neighbours' ],
     scale : [ 'linear', 'log' ],
-    show : [ 'value', 'operator', 'distance', 'uncertainty', 'blind' ], // writeAddress() and readAddress() check 'difference'
-    arrows : [ 'strokes', 'none' ], // without 'arrows', the default
+    // 'difference' needs a baseline: see writeAddress() and readAddress()
+    show : [ 'value', 'operator', 'distance', 'uncertainty', 'blind' ],
+    arrows : [ 'strokes', 'none' ], // 'arrows' is the default and is not written
     sensor : null,
     environment : null,
 };

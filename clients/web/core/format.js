@@ -99,17 +99,23 @@ function makeClock(timeZone) {
     };
 }
 
-// Returns an instant in milliseconds as its day and time. clock: from zoneClock().
-export function dayTime(clock, ms) {
+// dayTime() returns an instant in milliseconds as its day and time (`digits` 5: without seconds), dateTime() as its date with the year and
+// time without seconds. clock: from zoneClock().
+export function dayTime(clock, ms, digits = 8) {
     const { day, time } = clock(ms);
-    return `${day} ${time}`;
+    return `${day} ${time.slice(0, digits)}`;
+}
+
+export function dateTime(clock, ms) {
+    const { date, time } = clock(ms);
+    return `${date} ${time.slice(0, 5)}`;
 }
 
 // Returns an instant in milliseconds as text: its time (`digits` 5: without seconds) if it is on the same day as the instant
 // nowMs, otherwise its day and time without seconds. clock: from zoneClock().
 export function timeOrDay(clock, ms, nowMs, digits = 8) {
-    const { date, day, time } = clock(ms);
-    return date === clock(nowMs).date ? time.slice(0, digits) : `${day} ${time.slice(0, 5)}`;
+    const { date, time } = clock(ms);
+    return date === clock(nowMs).date ? time.slice(0, digits) : dayTime(clock, ms, 5);
 }
 
 export const qualityText = (quality) => say(QUALITIES.includes(quality) ? `quality.${quality}` : 'quality.unknown');

@@ -7,7 +7,7 @@ const CLICK_MS = 500;
 const SLOP_PX = { mouse: 3, pen: 5, touch: 8 };
 const LINE_PX = 16, PAGE_PX = 400;
 const WHEEL_PER_PX = 0.0016, PINCH_PER_PX = 0.01, MOST_PER_EVENT = 0.5;
-// MOVE_EXPECTED_MS: a mouse that has moved or turned its wheel over the picture within this time is expected to move the camera next
+// time in milliseconds after a hover or wheel event during which a camera move is likely
 const MOVE_EXPECTED_MS = 5000;
 
 const centre = (all) => ['x', 'y'].map((axis) => all.reduce((sum, p) => sum + p[axis], 0) / all.length);
@@ -19,7 +19,7 @@ export class Gestures {
     constructor() {
         this.pointers = new Map(); // pointers that are pressed: id -> { x, y, mode }
         this.moved = false;
-        this.mouseAt = -Infinity; // time of the mouse's last event over the picture, milliseconds
+        this.hoverAt = -Infinity; // time in milliseconds of the last hover or wheel event over the picture
     }
 
     get active() {
@@ -28,13 +28,13 @@ export class Gestures {
 
     // Returns true if the user is expected to move the camera soon. now: milliseconds.
     expectsMove(now) {
-        return this.active || now - this.mouseAt < MOVE_EXPECTED_MS;
+        return this.active || now - this.hoverAt < MOVE_EXPECTED_MS;
     }
 
-    // A mouse has moved or turned its wheel over the picture. Returns true if the user was not expected to move the camera before.
-    mouse(now) {
+    // Records a hover or wheel event over the picture. Returns true if no camera move was likely before.
+    hover(now) {
         const isNew = !this.expectsMove(now);
-        this.mouseAt = now;
+        this.hoverAt = now;
         return isNew;
     }
 

@@ -13,7 +13,7 @@ export function readNumbers(text, count = null) {
     return list.every(Number.isFinite) && (count === null || list.length === count) ? list : null;
 }
 
-// Writes an instant with its microseconds: rounded down to a millisecond, it would be before the alarm that was raised at this instant.
+// Writes an instant with microseconds. With milliseconds only, an address of an alarm's instant would show the plant just before the alarm.
 export function instantText(us) {
     const whole = Math.round(us), text = new Date(Math.floor(whole / 1000)).toISOString();
     return whole % 1000 ? `${text.slice(0, -1)}${String(whole % 1000).padStart(3, '0')}Z` : text;
@@ -50,7 +50,8 @@ export function clipText({ planes, box }) {
 
 const LISTS = ['range', 'light', 'breaks', 'isolines'], NAMES = ['hidden', 'isolate', 'ghost'];
 const APART = ['split', 'clip', 'baseline']; // see snapshotQuery
-const REMOVABLE = ['isolines', 'reach_m']; // parameters that users can remove although the sensor group in the plant file has them
+// Parameters whose default from the sensor group a user can remove. The query then says `none`.
+const REMOVABLE = ['isolines', 'reach_m'];
 const isNone = (value) => value === null || (Array.isArray(value) && value.length === 0);
 
 function text(name, value) {
@@ -63,20 +64,20 @@ function text(name, value) {
     return name === 'sensors' ? sensorsText(value) : String(value);
 }
 
-const isSaid = ([name, value]) => !APART.includes(name) && value !== undefined &&
+const isWritten = ([name, value]) => !APART.includes(name) && value !== undefined &&
     (!isNone(value) || REMOVABLE.includes(name) || (value !== null && NAMES.includes(name)));
 
 // Returns the query of /snapshot.png for a picture of a session's view. carried: the view's parameters, as Session.carried() returns them.
 export function snapshotQuery({ carried, camera, size, time }) {
     const query = { width: size.width, height: size.height };
-    for (const [name, value] of Object.entries(carried).filter(isSaid))
+    for (const [name, value] of Object.entries(carried).filter(isWritten))
         query[name] = text(name, value);
     if (carried.baseline)
         query.baseline = carried.baseline;
     if (carried.clip)
         query[carried.clip.planes ? 'clip' : 'clip_box'] = clipText(carried.clip);
     if (carried.split)
-        query.split = Object.entries(carried.split).filter(isSaid).map(([name, value]) => `${name}=${text(name, value)}`).join(';');
+        query.split = Object.entries(carried.split).filter(isWritten).map(([name, value]) => `${name}=${text(name, value)}`).join(';');
     const parallel = camera.height_m !== undefined;
     query.camera = numbersText([...camera.eye, ...camera.target, ...(parallel ? [] : [camera.fov])]);
     query.up = numbersText(camera.up);

@@ -3,7 +3,7 @@
 // browser. ?from and ?to as in /api/v1/history.
 import { asideOf } from '../core/alarm_actions.js';
 import { areaOf } from '../core/alarm_table.js';
-import { unitText, valueText, zoneClock } from '../core/format.js';
+import { dateTime, dayTime, unitText, valueText, zoneClock } from '../core/format.js';
 import { hearAlarms, readJournal, sortJournal } from '../core/handover.js';
 import { askInTime } from '../core/history.js';
 import { Model } from '../core/model.js';
@@ -25,14 +25,8 @@ new BroadcastChannel('plantcast').onmessage = ({ data }) => { // clears this pag
 
 const get = (path, args = {}) => askInTime(`api/v1/${path}`, args, token);
 let clock = zoneClock('UTC');
-const timeOf = (us) => {
-    const { date, time } = clock(us / 1000);
-    return `${date} ${time.slice(0, 5)}`;
-};
-const dayTimeOf = (us) => { // returns an instant as text without the year, which is in the page's heading
-    const { day, time } = clock(us / 1000);
-    return `${day} ${time.slice(0, 5)}`;
-};
+const dateTimeOf = (us) => dateTime(clock, us / 1000);
+const dayTimeOf = (us) => dayTime(clock, us / 1000, 5); // without the year, which is in the page's heading
 const alarmOf = (tag, kinds) => `${tag} · ${kinds.map((kind) => say(`kind.${kind}`)).join(', ')}`;
 const kindsOf = ({ kind, others = [] }) => [kind, ...others.map((other) => other.kind)];
 
@@ -100,9 +94,9 @@ function pageOf(model, notes, alarms, journal, cut, [fromUs, toUs], failures) {
     const counts = [['active', active], ['waiting', waiting], ['raised', raised?.reduce((sum, { count }) => sum + count, 0)],
         ['acknowledged', acknowledged?.length]];
     const title = say('handover.title', { plant: model.plant.name });
-    document.title = `${title} ${timeOf(toUs)}`;
+    document.title = `${title} ${dateTimeOf(toUs)}`;
     return [
-        make('h1', {}, title), make('p', { class: 'span' }, `${timeOf(fromUs)} – ${timeOf(toUs)} ${clock(toUs / 1000).offset}`),
+        make('h1', {}, title), make('p', { class: 'span' }, `${dateTimeOf(fromUs)} – ${dateTimeOf(toUs)} ${clock(toUs / 1000).offset}`),
         formOf(Math.round((toUs - fromUs) / 3600e6)),
         make('p', { class: 'counts' }, ...counts.map(([name, n]) =>
             make('span', {}, `${say(`handover.${name}`)}: `, make('b', {}, String(n ?? '–'))))),

@@ -62,10 +62,10 @@ export class CameraController {
         this[event.type](event);
     }
 
-    // A mouse has moved or turned its wheel over the picture: starts an animation frame, in which warp.js loads the picture before the
-    // camera first moves.
+    // Hover or wheel event over the picture: requests an animation frame in which warp.js uploads the picture, so that the first camera
+    // move is drawn without a delay.
     expectMove() {
-        if (this.gestures.mouse(performance.now()))
+        if (this.gestures.hover(performance.now()))
             this.viewport.invalidate();
     }
 
@@ -108,10 +108,10 @@ export class CameraController {
     pointermove(event) {
         const place = this.place(event);
         if (!this.gestures.active) {
-            const isMouse = isOnPicture(event) && event.pointerType !== 'touch';
-            if (isMouse)
+            const isHovering = isOnPicture(event) && event.pointerType !== 'touch';
+            if (isHovering)
                 this.expectMove();
-            this.handlers.point(isMouse ? place : null);
+            this.handlers.point(isHovering ? place : null);
             return;
         }
         this.apply(this.gestures.move(place), event.timeStamp);

@@ -21,9 +21,9 @@ const MARKS_MS = 15000, MARKS_MOST = 10000, MARK_PAGES = 5, HAND_MS = 400, NOW_U
 // lower edge and height of the bars that show how many alarms were raised; the highest bar has the full height only if it
 // represents `full` alarms or more.
 const TRACK = { top: 15, height: 10 }, BARS = { bottom: 58, height: 14, full: 10 }, BAR_PX = 5, LOST_POINTS = 300;
+const THUMB_PX = 9; // half the width of the slider's thumb: the slider's values end this far inside its track
 // MARK_PX: minimum distance between two alarm marks; SEARCH_MOST: journal rows per request; PAGES: maximum number of requests
 // when searching for the next alarm
-const THUMB_PX = 9; // half the width of the slider's thumb: the slider's values end this far inside its track
 const MARK_PX = 9, SEARCH_MOST = 10000, PAGES = 24, NAMED = 8;
 
 export class Timeline {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Lists paired wall displays, for engineers: pairing a display by the code that it shows, and revoking a pairing.
-import { zoneClock } from '../../core/format.js';
+import { dateTime, zoneClock } from '../../core/format.js';
 import { askInTime, loaderOf } from '../../core/history.js';
 import { refusalText } from '../../core/refusals.js';
 import { say } from '../../core/words.js';
@@ -38,8 +38,8 @@ export class Devices {
     }
 
     rowOf({ id, by: who, time_us: us, ...place }) {
-        const { date, time } = zoneClock(this.session.model.plant.time_zone)(us / 1000);
-        return make('li', { 'data-id': id }, make('span', {}, say('devices.is', { ...place, who, time: `${date} ${time.slice(0, 5)}` })),
+        const time = dateTime(zoneClock(this.session.model.plant.time_zone), us / 1000);
+        return make('li', { 'data-id': id }, make('span', {}, say('devices.is', { ...place, who, time })),
             make('button', { type: 'button', onclick: () => this.post({ type: 'unpair', id }) }, say('devices.revoke')));
     }
 
