@@ -62,7 +62,7 @@ test('a view without group, colour map or environment has those of a new view, w
     assert.deepEqual(shown(viewOf(session, 'look=flat').params), [first.id, model.colormaps[0].name, 'sky']);
     model.environments = ['sky', 'hall'];
     assert.deepEqual(shown(viewOf(session, `group=${other.id}`).params), [other.id, model.colormaps[0].name, 'hall']);
-    assert.deepEqual(shown(newView(session, { group: null })), [other.id, model.colormaps[0].name, 'hall'], 'a tag without group keeps the group');
+    assert.deepEqual(shown(newView(session, { group: null })), [other.id, model.colormaps[0].name, 'hall'], 'no group: the shown one');
     assert.equal(viewOf(session, 'show=difference&baseline=b').params.colormap, 'diverging');
 });
 
@@ -75,7 +75,8 @@ test('a viewer\'s new view has no engineer-only parameters of the view before it
     session.params = { ...session.params, reach_m: 0.1 };
     assert.deepEqual([newView(session, { group: id }).named, newView(session, { group: id }).group], ['home', id]);
     session.role = 'engineer';
-    assert.deepEqual([newView(session, { group: id }).named, newView(session, { group: id }).reach_m], [undefined, null]);
+    const { named, reach_m: reach } = newView(session, { group: id });
+    assert.deepEqual([named, reach], [undefined, null]);
 });
 
 test('a saved view shows the quantity, isolines and directions with which it was saved', () => {
