@@ -8,6 +8,7 @@
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "base/mem.h"
 
@@ -71,6 +72,32 @@ void child_paths_add_beside(struct child_paths *paths, const char *input, const 
     if (slash && slash > real) {
         *slash = 0;
         add_endings(paths, real, endings, 0, &left);
+    }
+    free(real);
+}
+
+void child_paths_link_beside(const char *folder, const char *input, const char *endings)
+{
+    char *real = realpath(input, NULL), *slash = real ? strrchr(real, '/') : NULL;
+    if (slash)
+        *slash = 0;
+    for (int lower = 0; slash && lower < 2; lower++) { /* first all exact names, so that they win over lower-case ones */
+        DIR *dir = opendir(*real ? real : "/");
+        int left = MAX_BESIDE;
+        for (const struct dirent *entry; dir && left > 0 && (entry = readdir(dir));) {
+            if (entry->d_name[0] == '.' || !ends_with_one_of(entry->d_name, endings))
+                continue;
+            char *file = mem_printf("%s/%s", real, entry->d_name), *target = realpath(file, NULL);
+            char *link = mem_printf("%s/%s", folder, entry->d_name);
+            for (char *c = link + strlen(folder) + 1; lower && *c; c++)
+                *c = (char)(*c >= 'A' && *c <= 'Z' ? *c - 'A' + 'a' : *c);
+            left -= target && symlink(target, link) == 0;
+            mem_free(link);
+            mem_free(file);
+            free(target);
+        }
+        if (dir)
+            closedir(dir);
     }
     free(real);
 }

@@ -16,6 +16,9 @@ void child_paths_add_folder_of(struct child_paths *paths, const char *path, enum
 /* Adds files with one of these endings (".bin .png", lower case) for reading: at most 4096 files, in the folder of `input` and
  * up to three levels below. Other files in these folders, such as keys, stay inaccessible. */
 void child_paths_add_beside(struct child_paths *paths, const char *input, const char *endings);
+/* Creates links in `folder` to the files with one of these endings (at most 4096) in the folder of `input`: to each file under its
+ * name, and under its name in lower case, for a confined child that cannot list the folder of `input`. Keeps existing files. */
+void child_paths_link_beside(const char *folder, const char *input, const char *endings);
 /* Adds everything a site's shell command needs: installed programs, the folders of $PATH, configuration in /etc except Plantcast's, and the
  * files and folders that the command names by absolute paths. */
 void child_paths_add_command(struct child_paths *paths, const char *command);

@@ -248,12 +248,12 @@ static int unpack_model(void *arg)
     return good ? 0 : 1;
 }
 
-/* Unpacks a compressed model into the reading's folder, to a file whose name ends in `ending`. Returns the path, which the
+/* Unpacks a compressed model into the folder `beside` of the reading, to a file whose name ends in `ending`. Returns the path, which the
  * caller frees with mem_free, or NULL with the reason in why. */
 static char *unpacked(const struct model_reading *packed, const char *ending, struct text *said, char why[CONVERSION_WHY_BYTES])
 {
     struct child_paths paths = { 0 };
-    char *stem = file_name_stem(packed->path), *path = mem_printf("%s/%s%s", packed->folder, stem, ending);
+    char *stem = file_name_stem(packed->path), *path = mem_printf("%s/beside/%s%s", packed->folder, stem, ending);
     struct model_reading unpacking = *packed;
     unpacking.output = path;
     child_paths_add(&paths, packed->path, CONFINE_READ);
@@ -435,7 +435,8 @@ static bool read_model(const struct import_format *format, const char *path, con
 {
     /* each reader runs in a separate folder, so that a compromised reader cannot replace models that were read earlier */
     char *own = mem_printf("%s/reading", folder), *output = mem_printf("%s/output.glb", own), *input = realpath(path, NULL);
-    bool made = mkdir(own, 0700) == 0;
+    char *beside = mem_printf("%s/beside", own); /* unpacked model, and links to the files next to the original */
+    bool made = mkdir(own, 0700) == 0 && mkdir(beside, 0700) == 0;
     char *attributes = input && format->reader == FORMAT_RVM ? attributes_beside(input) : NULL;
     struct model_reading reading = {
         .format = format, .path = input, .attributes = attributes, .output = output, .folder = own, .params = params
@@ -452,8 +453,10 @@ static bool read_model(const struct import_format *format, const char *path, con
     child_paths_add(&paths, inner ? inner : input, CONFINE_READ);
     child_paths_add(&paths, attributes, CONFINE_READ);
     child_paths_add(&paths, own, CONFINE_WRITE);
-    if (input && format->beside)
+    if (good && format->beside) {
         child_paths_add_beside(&paths, input, format->beside);
+        child_paths_link_beside(beside, input, format->beside); /* after unpacking, which would write through a link of the same name */
+    }
     if (good)
         good = format->reader == FORMAT_PROGRAM ? run_program(&reading, &paths, said, why)
                                                 : run_reading(&reading, &ourselves, &paths, said, why);
@@ -462,6 +465,7 @@ static bool read_model(const struct import_format *format, const char *path, con
     work_folder_remove(own);
     free(input);
     mem_free(own);
+    mem_free(beside);
     mem_free(inner);
     mem_free(ending);
     mem_free(output);

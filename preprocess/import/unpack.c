@@ -109,7 +109,7 @@ static void read_root(unzFile zip, char root[NAME_BYTES])
 
 static bool is_step(const char *ending)
 {
-    return !strcasecmp(ending, ".stp") || !strcasecmp(ending, ".step");
+    return !strcasecmp(ending, ".stp") || !strcasecmp(ending, ".step") || !strcasecmp(ending, ".p21");
 }
 
 static bool has_ending(const char *name, const char *ending)

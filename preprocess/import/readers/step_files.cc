@@ -20,7 +20,8 @@ constexpr size_t MOST_FILES = 5000;
 constexpr size_t MOST_BEFORE = 1000; /* number of bytes searched for the keyword at the start of a STEP statement */
 
 struct preparing {
-    std::string input_folder, output_folder;
+    std::string main;           /* path of the main file */
+    std::string copies, beside; /* folders of the copies, and of links to the files next to the main file */
     const char *asked;
     step_files out;
     /* file names of the copies, by path of the original; if the original is missing, by its name in the model */
@@ -34,21 +35,19 @@ std::string lower(std::string text)
     return text;
 }
 
-std::string upper(std::string text)
-{
-    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(toupper(c)); });
-    return text;
-}
-
 bool ends_with(const std::string &text, const std::string &end)
 {
     return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
+/* Returns whether this is the name of a STEP file. Compressed files are not read, but must be named if they are missing. */
 bool is_step_name(const std::string &name)
 {
     const std::string small = lower(name);
-    return ends_with(small, ".stp") || ends_with(small, ".step") || ends_with(small, ".p21");
+    for (const char *ending : { ".stp", ".step", ".p21", ".stpz", ".stp.gz", ".step.gz", ".p21.gz" })
+        if (ends_with(small, ending))
+            return true;
+    return false;
 }
 
 void add_utf8(std::string *out, unsigned long code)
@@ -88,17 +87,26 @@ std::string without_escapes(const std::string &text)
     return out;
 }
 
-/* Finds an external file named in a STEP file in the model's folder, ignoring case. Tries several spellings, because the
- * confined reader cannot list the folder. Returns its path, or "" if there is none. */
+std::string base_name(const std::string &path)
+{
+    return path.substr(path.find_last_of("/\\") == std::string::npos ? 0 : path.find_last_of("/\\") + 1);
+}
+
+/* Finds an external file named in a STEP file in the model's folder, ignoring case, by the links that child_paths_link_beside()
+ * made. Returns its path, or "" if there is none. */
 std::string find_beside(const preparing &p, const std::string &named)
 {
-    const std::string base = named.substr(named.find_last_of("/\\") == std::string::npos ? 0 : named.find_last_of("/\\") + 1);
-    const size_t dot = base.rfind('.');
-    const std::string stem = base.substr(0, dot), ending = base.substr(dot);
-    for (const std::string &start : { stem, lower(stem), upper(stem) })
-        for (const std::string &end : { ending, lower(ending), upper(ending) })
-            if (access((p.input_folder + start + end).c_str(), R_OK) == 0)
-                return p.input_folder + start + end;
+    const std::string base = base_name(named);
+    if (lower(base) == lower(base_name(p.main)))
+        return p.main;
+    for (const std::string &name : { base, lower(base) }) {
+        const std::string link = p.beside + name;
+        char *real = access(link.c_str(), R_OK) == 0 ? realpath(link.c_str(), nullptr) : nullptr;
+        const std::string path = real ? real : "";
+        free(real);
+        if (!path.empty())
+            return path;
+    }
     return "";
 }
 
@@ -189,7 +197,7 @@ std::string utf8_of(const std::string &path, const char *asked, bool say)
 
 step_files step_files_prepare(const std::string &path, const std::string &folder, const char *asked)
 {
-    preparing p = { path.substr(0, path.rfind('/') + 1), folder, asked, {}, {}, {} };
+    preparing p = { path, folder, folder + "beside/", asked, {}, {}, {} };
     const std::string text = read_whole(path.c_str());
     p.names[path] = "external_0.stp"; /* name of the main file's copy; files that refer to the main file use this name */
     const std::string converted = converted_text(&p, utf8_of(path, asked, true));

@@ -18,8 +18,9 @@ struct step_files {
     std::vector<std::string> copies;                /* paths to remove after reading */
 };
 
-/* Prepares a STEP file and all STEP files that it refers to and that lie in its folder. Writes copies into `folder`. Prints the encoding of
- * the names. asked: the encoding that the user stated, or "-". Calls refuse() if a file cannot be read. */
+/* Prepares a STEP file and all STEP files that it refers to, if the folder `beside` in `folder` has links to them. Writes copies into
+ * `folder`. Prints the encoding of the names. asked: the encoding that the user stated, or "-". Calls refuse() if a file cannot be
+ * read. */
 step_files step_files_prepare(const std::string &path, const std::string &folder, const char *asked);
 
 /* Returns the name without the mark at its end. Open CASCADE would read a name whose last character is not ASCII as an empty name, so
