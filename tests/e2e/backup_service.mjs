@@ -209,11 +209,18 @@ test('models outside of the plant\'s folder are in a backup without secrets; oth
         done
         echo 'MODELS="/srv/cad/newest.glb /srv/cad/today/a.glb ../above.glb /srv/cad/a.password"' >>${ETC}/options
         echo "  x: { model: /srv/cad/Halle süd/Kessel 1.glb, y: 1 }
-          model: /srv/cad/Halle süd/b.gltf  # comment" >>${ETC}/options`));
+          model: /srv/cad/Halle süd/b.gltf  # comment
+          from: /srv/step/LINE.STP
+          from: /srv/packed/line.stp.gz" >>${ETC}/options
+        mkdir /srv/step /srv/packed && cd /srv/step && echo step >LINE.STP && echo step >'Bolt 1.Step' && echo key >line.key
+        cd /srv/packed && echo packed >line.stp.gz && echo step >nut.stp`));
     ok(host.run('plantcast backup p1 --without-secrets -o /root/b'));
     const names = ok(host.run('tar --quoting-style=literal -tf /root/b/etc.tar')).split('\n');
     for (const name of ['Halle süd/Kessel 1.glb', 'Halle süd/b.gltf', 'Halle süd/teil 2.bin', 'tile.png', 'newest.glb', 'v2.glb'])
         assert.ok(names.includes(`srv/cad/${name}`), `${name} is not in ${names.join(', ')}`);
+    for (const name of ['step/LINE.STP', 'step/Bolt 1.Step', 'packed/line.stp.gz', 'packed/nut.stp'])
+        assert.ok(names.includes(`srv/${name}`), `${name} is not in ${names.join(', ')}`);
+    assert.ok(!names.includes('srv/step/line.key'));
     assert.ok(names.includes('srv/linked/c.glb') && !names.some((name) => /password|tokens|\.pem/.test(name)), names.join(', '));
     ok(host.run(`plantcast backup p1 --recipient ${recipient} -o /root/c; rm -r /etc/plantcast /var/lib/plantcast /srv/*`));
     const out = ok(host.run('plantcast restore /root/b'));
