@@ -42,7 +42,8 @@ static json_t *members_of(const struct session_context *context, const struct vi
     return o;
 }
 
-/* Returns the parameters that a new view of the same group, `show`, sensor and baseline as `shown` has by default. */
+/* Returns the parameters that a new view of the same group, `show`, sensor and baseline as `shown` has by default. The range is the default
+   for the kind of distance that `shown` has. */
 static json_t *defaults_of(const struct session_context *context, const struct view *shown)
 {
     const struct scene *scene = context->services->scene;
@@ -53,6 +54,7 @@ static json_t *defaults_of(const struct session_context *context, const struct v
     view.field.sensor = shown->field.sensor;
     view.field.baseline = shown->field.baseline;
     view_default_scale(scene, &view);
+    field_default_range(scene, &shown->field, &view.range_min, &view.range_max);
     if (view.field.show == SHOW_DIFFERENCE)
         view.colormap = colormap_find(context->plant, "diverging");
     return members_of(context, &view);
@@ -74,14 +76,20 @@ static json_t *right_defaults(const struct session_context *context, const struc
         all = members_of(context, &other->view);
     session_destroy(&other);
     json_decref(request);
-    json_t *defaults = json_incref(json_object_get(all, "split"));
-    json_decref(all);
-    if (json_is_object(defaults))
-        return defaults;
-    json_decref(defaults);
     struct view right;
     view_half(view, 1, &right);
-    return defaults_of(context, &right);
+    json_t *own = defaults_of(context, &right), *defaults = json_incref(json_object_get(all, "split"));
+    json_decref(all);
+    if (!json_is_object(defaults)) {
+        json_decref(defaults);
+        return own;
+    }
+    /* the range of distances depends on their kind, which the right half may have changed */
+    json_t *distance = json_object_get(json_object_get(o, "split"), "distance");
+    if (right.field.show == SHOW_DISTANCE && !json_equal(distance, json_object_get(defaults, "distance")))
+        json_object_set(defaults, "range", json_object_get(own, "range"));
+    json_decref(own);
+    return defaults;
 }
 
 /* Deletes the members that equal `defaults`. */

@@ -1227,6 +1227,31 @@ CASE(after_a_reload_the_new_plants_settings_apply)
     assert_true(right.field.reach_m == 2 && right.field.power == 4 && right.field.fill == FILL_NONE && right.range_max == 100);
 }
 
+/* The range of distances depends on their kind. A default range does not survive a reload, even if the kind is not the group's. */
+CASE(a_default_range_of_distances_is_not_carried)
+{
+    greet(f);
+    say(f, "{\"type\":\"params\",\"seq\":1,\"show\":\"distance\",\"sensor\":\"TI-1\",\"split\":{\"distance\":\"euclidean\"}}");
+    assert_true(f->session->view.range_max == 7 && f->session->view.right.range_max == 5);
+    for (int chosen = 0; chosen < 2; chosen++) {
+        char *text = test_memory(session_carried_text(&f->context, &f->session->view));
+        json_t *o = test_json(json_loads(text, 0, NULL)), *split = json_object_get(o, "split");
+        assert_string_equal(json_string_value(json_object_get(split, "distance")), "euclidean");
+        assert_int_equal(json_object_get(o, "range") != NULL, chosen);
+        assert_int_equal(json_object_get(split, "range") != NULL, chosen);
+        say(f, "{\"type\":\"params\",\"seq\":2,\"range\":[0,3],\"split\":{\"distance\":\"euclidean\",\"range\":[0,4]}}");
+    }
+}
+
+CASE(a_default_range_of_the_whole_view_is_not_carried)
+{
+    greet(f);
+    say(f, "{\"type\":\"params\",\"seq\":1,\"show\":\"distance\",\"sensor\":\"TI-1\",\"distance\":\"euclidean\"}");
+    json_t *o = test_json(json_loads(test_memory(session_carried_text(&f->context, &f->session->view)), 0, NULL));
+    assert_string_equal(json_string_value(json_object_get(o, "distance")), "euclidean");
+    assert_null(json_object_get(o, "range"));
+}
+
 /* A reload forgets readings saved without a name. A view that compared with them then shows values in the group's own colours. */
 CASE(a_difference_from_forgotten_readings_becomes_values)
 {
