@@ -220,6 +220,16 @@ CASE(test_hello_with_a_time_in_the_future_begins_in_the_present)
     assert_true(json_is_null(json_object_get(time, "at_us")) && isnan(wanted(f)));
 }
 
+CASE(test_without_a_history_a_time_in_the_future_is_no_error)
+{
+    struct snapshot_cache *snapshot_cache = f->services.snapshot_cache;
+    f->services.snapshot_cache = NULL;
+    say(f, test_printf(HELLO, ",\"at_us\":1893500000000000"));
+    assert_null(hear(f, "error"));
+    assert_true(f->session->hello && f->session->view.at_us == 0);
+    f->services.snapshot_cache = snapshot_cache;
+}
+
 CASE(test_the_newest_seconds_are_the_present)
 {
     greet(f, "");

@@ -65,14 +65,12 @@ static void refuse(struct session *session, enum refusal_code why)
 
 void session_time_begin(struct session *session, int64_t at_us, double speed, int64_t now_utc_ns)
 {
-    if (at_us == 0)
+    if (at_us == 0 || at_us > now_utc_ns / 1000)
         return;
     if (!session->context->services->snapshot_cache) {
         refuse(session, REFUSAL_UNRECORDED);
         return;
     }
-    if (at_us > now_utc_ns / 1000)
-        return;
     session->travel.first = true;
     session->travel.speed = speed;
     go(session, at_us);
