@@ -266,8 +266,8 @@ void outbox_tick(struct outbox *outbox, int64_t now_us)
 {
     for (size_t i = outbox->count; i-- > 0;) {
         struct episode *episode = &outbox->episodes[i];
-        if (episode->cleared_us >
-            now_us) /* the wall clock was set back: Alertmanager would show an alert that ends in the future as active */
+        /* An end in the future means that the wall clock was set back. Alertmanager would show the alert as active. */
+        if (episode->cleared_us > now_us)
             episode->cleared_us = now_us;
         if (!episode->ended_us)
             advance(outbox, episode, now_us);
@@ -279,6 +279,9 @@ void outbox_tick(struct outbox *outbox, int64_t now_us)
         /* a message to Alertmanager is never given up because of its age: each such message has the present state of all
            alarms, so it does not become outdated */
         bool keeps = outbox->plant->notify->recipients[i].kind == NOTIFY_ALERTMANAGER;
+        /* A message from the future means that the wall clock was set back. Its age would stay negative. */
+        if (box->batch_us > now_us)
+            box->batch_us = now_us;
         if (!keeps && box->batch_count > 0 && box->attempts > 0 && now_us - box->batch_us > OUTBOX_KEEP_US)
             drop_alarms(outbox, box, 0);
     }

@@ -428,6 +428,21 @@ CASE(alertmanager_gets_alerts_after_the_clock_was_set_back)
     assert_int_equal(ended, 2); /* an alert whose end is in the future is active */
 }
 
+CASE(an_undeliverable_message_is_given_up_after_the_clock_was_set_back)
+{
+    struct outbox_message message;
+    int64_t before = T0 - INT64_C(365) * 24 * 60 * MIN;
+    load(f, "  - { id: all, to: ops }\n");
+    put(f, 0, LOCAL, true, true, T0, T0);
+    assert_true(outbox_next(f->outbox, OPS, T0 + 3 * S, &message));
+    outbox_failed(f->outbox, OPS, T0 + 4 * S);
+    outbox_tick(f->outbox, before);
+    outbox_tick(f->outbox, before + 24 * 60 * MIN);
+    assert_int_equal(outbox_counts(f->outbox, OPS).lost, 0);
+    outbox_tick(f->outbox, before + 24 * 60 * MIN + S);
+    assert_int_equal(outbox_counts(f->outbox, OPS).lost, 1);
+}
+
 CASE(a_clock_that_jumps_ahead_loses_nothing_later)
 {
     struct outbox_message message;
