@@ -16,7 +16,8 @@
 
 enum { ROWS_DEFAULT = 1000, MAX_ROWS = 10000 };
 
-static const int64_t MAX_AGE_NS = NS_PER_S / 10;
+/* A list of alarms contains the present time, so a cached text must not be older. */
+static const int64_t CACHED_TEXT_MAX_AGE_NS = NS_PER_S / 10;
 
 static const char *mode_name(enum alarm_mode mode)
 {
@@ -54,7 +55,7 @@ char *alarms_text(struct alarm_text_cache *cache, struct alarm_service *alarm_se
                   uint64_t *number_out)
 {
     uint64_t since = *number_out;
-    bool recent = cache && cache->text && llabs(now_utc_ns - cache->utc_ns) <= MAX_AGE_NS;
+    bool recent = cache && cache->text && llabs(now_utc_ns - cache->utc_ns) <= CACHED_TEXT_MAX_AGE_NS;
     if (recent && cache->since == since && cache->number == alarm_service_number(alarm_service)) {
         *number_out = cache->number;
         return mem_strdup(cache->text);

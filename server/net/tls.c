@@ -176,8 +176,9 @@ static void publish(const struct tls *tls)
     mem_free(path);
 }
 
-/* Gives a new connection the newest certificate. Certificates loaded into the connection's own context would not do: OpenSSL keeps one
-   for each type of key there, so that a certificate with another type of key would not replace the old one. */
+/* Gives a new connection the newest certificate. OpenSSL keeps one certificate for each type of key in a server's SSL_CTX. A new
+   certificate with another type of key would be added there, and would not replace the old one. Therefore this callback sets the
+   certificate on each connection. */
 static int choose_certificate(SSL *connection, void *arg)
 {
     const struct tls *tls = arg;
