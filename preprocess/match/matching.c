@@ -76,9 +76,12 @@ static void print_list(const struct matching_run *run)
         printf("%s: read as %s\n", path, list->encoding.name);
     if (list->same > 0)
         printf("%s: ignored %zu duplicate rows\n", path, list->same);
-    if (list->differing > 0)
-        printf("%s: %zu rows repeat a tag, with other contents: only the first row of each tag is used: %s%s\n", path, list->differing,
-               list->differing_lines, list->differing > 5 ? ", ..." : "");
+    struct text differing = { 0 };
+    tag_names_say(&list->differing, "row repeats a tag, with other contents: only the first row of each tag is used",
+                  "rows repeat a tag, with other contents: only the first row of each tag is used", &differing);
+    if (differing.length > 0)
+        printf("%s: %s", path, differing.at);
+    text_finish(&differing);
     if (list->renamed > 0)
         printf("%s: %zu tags share their name with a tag in another folder of the control system: they are named FOLDER/TAG\n", path,
                list->renamed);

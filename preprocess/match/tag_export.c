@@ -409,7 +409,7 @@ void tag_export_finish(struct tag_export *list)
         for (int f = 0; f < EXPORT_FIELDS; f++)
             mem_free(list->tags[i].fields[f]);
     mem_free(list->tags);
-    mem_free(list->differing_lines);
+    tag_names_finish(&list->differing);
     text_finish(&list->remarks);
     *list = (struct tag_export){ 0 };
 }

@@ -9,6 +9,7 @@
 #include "base/text/charset.h"
 #include "base/text/text.h"
 #include "preprocess/match/export_field.h"
+#include "preprocess/match/tag_names.h"
 
 struct export_tag {
     char *fields[EXPORT_FIELDS]; /* texts of the tag's fields, UTF-8; "": empty; NULL only while a reader fills the tag */
@@ -22,9 +23,8 @@ struct tag_export {                 /* zero-initialise */
     struct export_tag *tags;        /* tags in the order of the exported file; their names are unique (case-insensitive) */
     size_t count, capacity;
     size_t rows; /* number of rows that describe a tag, before merging duplicates */
-    /* numbers of rows omitted as duplicates. same: equal to the first row with the same name; differing: different from it */
-    size_t same, differing;
-    char *differing_lines; /* the first duplicate rows that differ, as "TT-101 (lines 5 and 80), ..."; NULL: none */
+    size_t same; /* number of rows omitted because they equal the first row with the same name */
+    struct tag_names differing; /* rows omitted because they differ from the first row with the same name */
     /* nameless: number of rows omitted because they have no name; control: number of control characters; damaged: number of
      * undecodable characters */
     size_t nameless, control, damaged;

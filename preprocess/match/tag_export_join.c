@@ -12,8 +12,6 @@
 #include "preprocess/match/tag_export.h"
 #include "preprocess/match/tag_names.h"
 
-enum { NAMED = 5 };
-
 struct export_tag *tag_export_add(struct tag_export *list, int line)
 {
     mem_grow(&list->tags, &list->capacity, list->count + 1, sizeof(*list->tags));
@@ -80,13 +78,13 @@ static void rename_by_folder(struct tag_export *list)
     mem_free(order);
 }
 
-static void report_differing(struct tag_export *list, size_t first, size_t second, struct text *out)
+/* Adds a pair of tags to `names`, under the name of the first one, with the line numbers of both. */
+static void add_pair(struct tag_names *names, const struct export_tag *first, const struct export_tag *second)
 {
-    if (list->differing++ >= NAMED)
-        return;
-    text_add(out, "%s%.60s", out->length > 0 ? ", " : "", list->tags[first].fields[EXPORT_NAME]);
-    if (list->tags[first].line > 0)
-        text_add(out, " (lines %d and %d)", list->tags[first].line, list->tags[second].line);
+    char lines[60] = "";
+    if (first->line > 0)
+        snprintf(lines, sizeof(lines), "lines %d and %d", first->line, second->line);
+    tag_names_add(names, first->fields[EXPORT_NAME], "%s", lines);
 }
 
 struct folded {
@@ -109,15 +107,9 @@ static void say_alike(struct tag_export *list)
     for (size_t i = 0; i < list->count; i++)
         all[i] = (struct folded){ fold_text(list->tags[i].fields[EXPORT_NAME]), i };
     qsort(all, list->count, sizeof(*all), by_key);
-    for (size_t i = 1; i < list->count; i++) {
-        char key[61], lines[60] = "";
-        if (strcasecmp(all[i].key, all[i - 1].key) != 0)
-            continue;
-        snprintf(key, sizeof(key), "%.60s", all[i].key);
-        if (list->tags[all[i].tag].line > 0)
-            snprintf(lines, sizeof(lines), "lines %d and %d", list->tags[all[i - 1].tag].line, list->tags[all[i].tag].line);
-        tag_names_add(&names, key, "%s", lines);
-    }
+    for (size_t i = 1; i < list->count; i++)
+        if (strcasecmp(all[i].key, all[i - 1].key) == 0)
+            add_pair(&names, &list->tags[all[i - 1].tag], &list->tags[all[i].tag]);
     tag_names_say(&names, "tag differs from another tag only in the kind of dashes, letter widths or blanks; both tags are kept",
                   "tags differ from another tag only in the kind of dashes, letter widths or blanks; both tags are kept", &list->remarks);
     for (size_t i = 0; i < list->count; i++)
@@ -128,7 +120,6 @@ static void say_alike(struct tag_export *list)
 
 void tag_export_join(struct tag_export *list)
 {
-    struct text differing = { 0 };
     rename_by_folder(list);
     size_t *order = sort_names(list), kept = 0;
     bool *drop = mem_array(list->count + 1, sizeof(*drop));
@@ -143,7 +134,7 @@ void tag_export_join(struct tag_export *list)
         drop[order[i]] = true;
         list->same += same;
         if (!same)
-            report_differing(list, order[first], order[i], &differing);
+            add_pair(&list->differing, &list->tags[order[first]], &list->tags[order[i]]);
     }
     for (size_t i = 0; i < list->count; i++)
         if (drop[i])
@@ -157,8 +148,6 @@ void tag_export_join(struct tag_export *list)
             if (!list->tags[i].fields[f])
                 list->tags[i].fields[f] = mem_strdup("");
     say_alike(list);
-    list->differing_lines = differing.length > 0 ? mem_strdup(differing.at) : NULL;
-    text_finish(&differing);
     mem_free(order);
     mem_free(drop);
 }

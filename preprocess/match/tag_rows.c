@@ -222,8 +222,8 @@ static const char *type_of(const char *type)
     return found;
 }
 
-/* Returns whether an exported tag is omitted from the tag list. Adds the tag to `types` if its data type is the reason. type: type_of()
- * the tag. */
+/* Returns whether an exported tag is omitted from the tag list. Adds the tag to `types` if its data type is the reason. type: result of
+ * type_of() for the tag's data type. */
 static bool is_left_out(struct tag_names *types, const struct tag_row_input *input, const char *type)
 {
     const struct export_tag *tag = input->tag;

@@ -111,7 +111,7 @@ test('a malformed list with duplicate rows, Korean, slashes, blanks and control 
     const said = good(run('plantcast', 'match', folder, join(folder, 'export.csv'), '--equipment', 'level=2'));
     assert.match(said.stdout, /ignored 7 duplicate rows/);
     assert.match(said.stdout,
-        /1 rows repeat a tag, with other contents: only the first row of each tag is used: P-102 A\/B_PT01 \(lines 3 and 8\)/);
+        /1 row repeats a tag, with other contents: only the first row of each tag is used: P-102 A\/B_PT01 \(lines 3 and 8\)/);
     assert.match(said.stdout, /ignored 3 rows without a tag name/);
     assert.match(said.stdout, /replaced 6 control characters by blanks/);
     const found = Object.fromEntries(table(join(folder, 'matches.csv')).map(({ Tag, Status, Asset }) => [Tag, `${Status} ${Asset}`]));

@@ -560,12 +560,27 @@ TEST(test_repeated)
     assert_int_equal(list.rows, 7);
     assert_int_equal(list.count, 4);
     assert_int_equal(list.same, 1);
-    assert_int_equal(list.differing, 1);
-    assert_string_equal(list.differing_lines, "TT-2 (lines 3 and 5)");
+    assert_int_equal(list.differing.count, 1);
+    assert_string_equal(list.differing.names.at, "TT-2 (lines 3 and 5)");
     assert_int_equal(list.nameless, 1);
     assert_int_equal(list.control, 1);
     check(&list, 2, EXPORT_NAME, "TT -3");
     check(&list, 3, EXPORT_NAME, "열/교환 기");
+    tag_export_finish(&list);
+}
+
+/* Remarks show the whole name of a tag in long folders, as it is in the export. */
+TEST(test_alike_in_long_folders)
+{
+    struct tag_export list;
+    const char *folder_name = "공장/구역/Boiler house 1 long folder name/and another folder with a long name";
+    assert_true(read_text(&list, test_printf("Tag Name,Address\n%s/TIC\xe2\x80\x93"
+                                             "101,1\n%s/TIC-101,2\n",
+                                             folder_name, folder_name)));
+    assert_int_equal(list.count, 2);
+    assert_non_null(strstr(list.remarks.at, test_printf("%s/TIC\xe2\x80\x93"
+                                                        "101 (lines 2 and 3)",
+                                                        folder_name)));
     tag_export_finish(&list);
 }
 
