@@ -3,7 +3,7 @@
 // installs a renewed certificate; a build without the page's charts fails.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
-import { cpSync, existsSync, mkdirSync, readdirSync, readFileSync, rmdirSync, rmSync, statSync, writeFileSync } from 'node:fs';
+import { cpSync, existsSync, mkdirSync, readdirSync, readFileSync, rmdirSync, renameSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { basename, join, resolve } from 'node:path';
 import { test } from 'node:test';
 import { folderOfTests } from './support/folders.mjs';
@@ -86,6 +86,11 @@ test('plantcast init replaces a missing certificate, and keeps the key and the a
     rmSync(etc('two/tls/fullchain.pem'));
     assert.match(init('two', '--host', 'other.example').err, /the authority in .*two\/tls cannot sign a certificate for other\.example/);
     assert.ok(!existsSync(etc('two/tls/fullchain.pem')));
+    for (const name of ['ca.key', 'ca.pem']) {
+        renameSync(etc('two/tls', name), etc('two/tls', `${name}.safe`));
+        assert.match(init('two').err, new RegExp(`two/tls/${name} is missing: put it back`));
+        renameSync(etc('two/tls', `${name}.safe`), etc('two/tls', name));
+    }
     const { code, err } = init('two');
     assert.equal(code, 0, err);
     assert.deepEqual([names.map(tls), readFileSync(etc('two/tokens'), 'utf8')], [before, tokens]);
