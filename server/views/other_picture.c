@@ -9,9 +9,14 @@
 
 enum { SIGNATURE_BYTES = 8, CHUNK_BYTES = 12 /* CHUNK_BYTES: length, type, checksum */, HEAD_BYTES = 13 };
 
+/* Returns the value of the part whose name, with its equals sign, is `name`, or NULL. Parts are separated by ", ". */
 static const char *value_of(const char *header, const char *name)
 {
-    const char *at = strstr(header, name);
+    const char *at = header;
+    while (at && strncmp(at, name, strlen(name)) != 0) {
+        at = strstr(at, ", ");
+        at = at ? at + 2 : NULL;
+    }
     return at ? at + strlen(name) : NULL;
 }
 
