@@ -21,7 +21,7 @@ static void shape_of(const struct scene_asset *asset, struct relocation_shape *s
                                         .tolerance_m = asset->plant->tolerance_m };
 }
 
-/* Returns whether plantcast-prep has not prepared the asset again since the daemon opened the asset's file. */
+/* Returns whether the manifest names the file that the daemon has opened. Otherwise the prepared surface may be of another model. */
 static bool is_same_file(const struct scene_asset *asset, const struct manifest_entry *entry)
 {
     const char *slash = strrchr(asset->file->path, '/');

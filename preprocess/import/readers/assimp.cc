@@ -194,6 +194,7 @@ void shift_obj(std::string *text, double offset[3])
         return;
     }
     std::string moved;
+    moved.reserve(text->size());
     for (size_t at = 0, end; at < text->size(); at = end + 1) {
         end = std::min(text->find('\n', at), text->size());
         const std::string line = text->substr(at, end - at);
@@ -207,7 +208,7 @@ void shift_obj(std::string *text, double offset[3])
             moved += line + "\n";
         }
     }
-    *text = moved;
+    *text = std::move(moved);
 }
 
 Assimp::IOStream *of_text(const std::string &text)
@@ -337,8 +338,9 @@ struct rounding {
     }
 };
 
-/* Adds the positions of all meshes below a node, and the translations of the nodes that have them. above: the sum of the nodes above;
- * scale: the scale of the nodes above. Each position is measured in the frame in which Assimp stores it. */
+/* Adds the positions of all meshes below a node, and the translations of the nodes that have them. above: the largest distance and
+ * spacing among the translations of the nodes above; scale: the scale of the nodes above. Each position is measured in the frame in
+ * which Assimp stores it. */
 void add_rounding(const aiScene *scene, const aiNode *node, rounding above, double scale, rounding *out)
 {
     const aiMatrix4x4 &m = node->mTransformation;

@@ -64,7 +64,7 @@ export class GlbWriter {
 
     // Transforms triangles by the matrix `place` and adds them to the file as a glTF primitive. vertices: six numbers per
     // vertex, position and normal. corners: vertex indices. Returns { primitive, dropped }: primitive is null if no triangle
-    // remains; dropped: number of triangles left out because a corner is not finite.
+    // remains; dropped: number of triangles left out because a corner is not finite, or has no vertex.
     addPrimitive({ vertices, corners }, place, color) {
         const count = Math.floor(vertices.length / 6), positions = new Float32Array(count * 3), normals = new Float32Array(count * 3);
         const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity], good = new Uint8Array(count);

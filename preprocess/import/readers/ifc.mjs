@@ -168,7 +168,7 @@ function readGeometry(api, id, model) {
 
 function addTree(glb, model, { shown, geometries }, root) {
     const seen = new Set();
-    const drawn = new Set(), holed = new Map(); // holed: by element id, the number of its triangles that are left out
+    const drawn = new Set(), incomplete = new Map(); // incomplete: by element id, the number of its triangles that are left out
     let storeys = 0;
     const add = (id, parent, storey, depth) => {
         if (depth > MAX_DEPTH)
@@ -184,7 +184,7 @@ function addTree(glb, model, { shown, geometries }, root) {
         if (parts) {
             const { mesh, matrix, dropped } = meshOf(glb, geometries, parts, name);
             if (mesh >= 0 && dropped > 0)
-                holed.set(id, dropped);
+                incomplete.set(id, dropped);
             if (mesh >= 0)
                 glb.place(below.length > 0 ? glb.addNode(node, '', null) : node, mesh, matrix);
             if (mesh >= 0)
@@ -197,7 +197,7 @@ function addTree(glb, model, { shown, geometries }, root) {
         add(id, root, '', 0);
     for (const id of shown.keys())
         add(id, root, '', 0); // add the elements that are outside the spatial tree as children of the root node
-    return { drawn, holed, storeys };
+    return { drawn, incomplete, storeys };
 }
 
 // Converts the file's text to UTF-8. Standard IFC is ASCII with escapes, but many programs write names in their system's encoding.
@@ -249,13 +249,13 @@ async function main([input, output, , , , encoding]) {
     const wrong = new Set(solids.elements.size > 0 ? findUncut().flatMap(({ elements }) => elements) : []);
     takeSolids(model, solids, geometry, { styledItem: webIfc.IFCSTYLEDITEM, voids: webIfc.IFCRELVOIDSELEMENT }, wrong);
     const uncut = findUncut();
-    const { drawn, holed, storeys } = addTree(glb, model, geometry, root);
+    const { drawn, incomplete, storeys } = addTree(glb, model, geometry, root);
     errors.stop();
     const types = { product: webIfc.IFCPRODUCT, grid: webIfc.IFCGRIDPLACEMENT };
     const isShown = (element) => drawn.has(element) || NOT_SHOWN.has(model.classOf(element));
     const { lost, lines, ids, drawn: drawnInstead } = findLosses(model, webIfc.IFCPRODUCT, isShown, solids.failed);
-    const partly = [...geometry.unplaced.keys()].filter((element) => drawn.has(element));
-    askForSolids(join(dirname(output), 'asked.txt'), [...ids, ...partly, ...holed.keys(),
+    const withoutPlace = [...geometry.unplaced.keys()].filter((element) => drawn.has(element));
+    askForSolids(join(dirname(output), 'asked.txt'), [...ids, ...withoutPlace, ...incomplete.keys(),
         ...findDamaged(model, webIfc.IFCPRODUCT, errors.at()), ...uncut.flatMap(({ opening, elements }) => [opening, ...elements])]);
     if (drawn.size > 0)
         writeFileSync(output, glb.finished());
@@ -265,7 +265,7 @@ async function main([input, output, , , , encoding]) {
     ...lines.length > 0 ? [`not shown: ${lines.length} elements that consist only of lines or points: ${
         lines.slice(0, MAX_NAMED).join(', ')}${
         lines.length > MAX_NAMED ? ', ...' : ''}`.replace(/[\t\n]/g, ' ')] : [],
-    ...lost, ...partlyLostLines(model, partly.map((element) => [element, geometry.unplaced.get(element).length]), holed),
+    ...lost, ...partlyLostLines(model, withoutPlace.map((element) => [element, geometry.unplaced.get(element).length]), incomplete),
     ...openingLines(model, uncut), ...drawnInstead,
     ...misplacedLines(model, types, isShown, solids.failed), ...errors.lines(model, solids), ''].join('\n'));
     if (drawn.size === 0)

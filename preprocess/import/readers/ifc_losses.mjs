@@ -110,14 +110,14 @@ export function findLosses(model, product, isShown, failed) {
 }
 
 // Returns lines of the reader's output (format: error records of findings.h) that name elements shown without some of their
-// parts or triangles. unplaced: pairs of an element and its number of parts that have no place. holed: by element id, the number
-// of triangles that are left out.
-export function partlyLostLines(model, unplaced, holed) {
+// parts or triangles. unplaced: pairs of an element and its number of parts that have no place. incomplete: by element id, the
+// number of triangles that are left out.
+export function partlyLostLines(model, unplaced, incomplete) {
     const named = (id) => `#${id} ${model.nameOf(id)} (${model.classOf(id)}, ${model.line(id)?.GlobalId?.value ?? 'no GUID'})`;
     return [...unplaced.map(([id, count]) => fields('error', count,
-        `parts of ${named(id)} are not shown, because their placement is not a valid one: export the model again`)),
-    ...[...holed].map(([id, count]) => fields('error', count,
-        `triangles of ${named(id)} are not shown, because their coordinates are infinite or not numbers`))];
+        `parts of ${named(id)} are not shown, because their placement is invalid: export the model again`)),
+    ...[...incomplete].map(([id, count]) => fields('error', count,
+        `triangles of ${named(id)} are not shown, because their coordinates are missing, infinite or not numbers`))];
 }
 
 // Returns lines of the reader's output that name the misplaced elements, whose grid placement could not be computed. Format:
