@@ -111,6 +111,13 @@ bool connection_header(struct lws *wsi, enum lws_token_indexes token, char *out,
     return lws_hdr_total_length(wsi, token) == 0 || lws_hdr_copy(wsi, out, size, token) >= 0;
 }
 
+bool connection_origin_allowed(const struct server_context *server, struct lws *wsi)
+{
+    char origin[256], host[256];
+    return connection_header(wsi, WSI_TOKEN_ORIGIN, origin, sizeof(origin)) && connection_header(wsi, WSI_TOKEN_HOST, host, sizeof(host)) &&
+           access_origin(&server->params.access, origin, host, server->tls != NULL);
+}
+
 void connection_learn_host_name(struct server_context *server)
 {
     char name[sizeof(server->machine)] = "";

@@ -27,15 +27,6 @@ static int deny_node(struct server_context *server, struct lws *wsi, int status,
     return refuse(server, wsi, status, text);
 }
 
-/* Returns whether the Origin header of a handshake is allowed: it names this host, or is absent because the client is not a
-   browser. Other origins are refused: otherwise another host's page could use the rights that its visitor has here. */
-static bool origin_allowed(const struct server_context *server, struct lws *wsi)
-{
-    char origin[256], host[256];
-    return connection_header(wsi, WSI_TOKEN_ORIGIN, origin, sizeof(origin)) && connection_header(wsi, WSI_TOKEN_HOST, host, sizeof(host)) &&
-           access_origin(&server->params.access, origin, host, server->tls != NULL);
-}
-
 static int refuse_protocol(struct server_context *server, struct lws *wsi, const char *list, const char *spoken)
 {
     char asked[48], *text = mem_printf("subprotocol %s is unknown; this server speaks %s\n", quoted(list, asked), spoken);
@@ -54,8 +45,10 @@ int stream_check_upgrade(struct server_context *server, struct lws *wsi)
         return refuse(server, wsi, HTTP_STATUS_NOT_FOUND, "the stream is at /stream\n");
     if (!connection_identify(server, wsi, &refusal))
         return (core ? deny_node : refuse)(server, wsi, refusal.status, refusal.text ? refusal.text : refusal_words(refusal.code));
-    if (!origin_allowed(server, wsi))
+    if (!connection_origin_allowed(server, wsi)) {
+        connection_record(server, wsi, "access", "refused", path, refusal_words(REFUSAL_FOREIGN));
         return refuse(server, wsi, HTTP_STATUS_FORBIDDEN, "this origin is not allowed; --origin URL allows one\n");
+    }
     if (core && (why = renderers_refusal(server, wsi)))
         return deny_node(server, wsi, HTTP_STATUS_FORBIDDEN, why);
     if (!core && role_is_node(connection_of(wsi)->role))

@@ -146,6 +146,10 @@ test('the audit trail records each action with user, address, object and result'
     await found('the refused pick', (line) => line.event === 'access' && line.who === 'viewer-1' && line.what === '/api/v1/pick');
     assert.equal((await ask('/api/v1/reload', tokens.engineer, { method: 'POST', origin: 'https://elsewhere.example' })).status, 403);
     await found('the page of another site', (line) => line.what === '/api/v1/reload' && /another site/.test(line.why));
+    const stranger = { origin: 'https://elsewhere.example', headers: [`Authorization: Bearer ${tokens.viewer}`] };
+    await assert.rejects(PlainClient.open(plant.port, stranger), /403/);
+    await found('the stream of another site', (line) => line.what === '/stream' && line.event === 'access' &&
+        line.who === 'viewer-1' && /another site/.test(line.why));
     const reload = await ask('/api/v1/reload', tokens.engineer, { method: 'POST' });
     assert.equal(JSON.parse(reload.body).by, 'engineer-1');
     await found('the reload', (line) => line.event === 'reload' && line.result === 'done' && line.who === 'engineer-1');

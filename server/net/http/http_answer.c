@@ -192,6 +192,12 @@ int request_refuse(struct http_exchange *request, int status, enum refusal_code 
     return request_refuse_for(request, status, &(struct refusal){ .code = code });
 }
 
+int request_refuse_foreign(struct server_context *server, struct http_exchange *request, const char *path)
+{
+    connection_record(server, request->wsi, "access", "refused", path, refusal_words(REFUSAL_FOREIGN));
+    return request_refuse(request, HTTP_STATUS_FORBIDDEN, REFUSAL_FOREIGN);
+}
+
 int request_answer_unreadable(const struct server_context *server, struct http_exchange *request)
 {
     if (server->params.plant.core_link && !server->params.plant.history_folder)

@@ -152,9 +152,6 @@ int metrics(struct server_context *server, struct http_exchange *request);
 /* Answers the request for which ask_instant() was called, once the readings of the past instant are loaded or loading has failed. */
 void answer_instant(struct server_context *server, struct http_exchange *request, const struct history_loader_answer *loaded);
 
-/* Returns whether the request may change state on the server. Requests that another site's page made the user's browser send may not. */
-bool request_may_change(struct server_context *server, struct http_exchange *request);
-
 /* --- http_import.c: requests with which engineers import a plant; only if server->params.import is set */
 
 /* Returns whether the path is one of the import's paths that accept POST. */

@@ -367,7 +367,7 @@ int import_post(struct server_context *server, struct http_exchange *request, co
     struct args args;
     size_t i = find_post(path);
     request->step = posts[i].path;
-    if (!request_may_change(server, request))
+    if (!connection_origin_allowed(server, request->wsi))
         return refuse_with(request, HTTP_STATUS_FORBIDDEN, REFUSAL_FOREIGN);
     if (!request_args(request->wsi, &args, &error)) {
         record(request, "failed", error.text);

@@ -6,24 +6,10 @@
 #include "net/http/http_impl.h"
 #include "net/connection.h"
 
-bool request_may_change(struct server_context *server, struct http_exchange *request)
-{
-    char origin[256], host[256];
-    struct lws *wsi = request->wsi;
-    return connection_header(wsi, WSI_TOKEN_ORIGIN, origin, sizeof(origin)) && connection_header(wsi, WSI_TOKEN_HOST, host, sizeof(host)) &&
-           access_origin(&server->params.access, origin, host, server->tls != NULL);
-}
-
-int request_refuse_foreign(struct server_context *server, struct http_exchange *request, const char *path)
-{
-    connection_record(server, request->wsi, "access", "refused", path, refusal_words(REFUSAL_FOREIGN));
-    return request_refuse(request, HTTP_STATUS_FORBIDDEN, REFUSAL_FOREIGN);
-}
-
 int ask_reload(struct server_context *server, struct http_exchange *request)
 {
     request->close = true; /* closes the connection after the answer, because the client may send a body that nobody will read */
-    if (!request_may_change(server, request))
+    if (!connection_origin_allowed(server, request->wsi))
         return request_refuse_foreign(server, request, RELOAD_PATH);
     if (!server->params.reload)
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, "this plant cannot be reloaded\n");

@@ -148,7 +148,7 @@ int ask_logout(struct server_context *server, struct http_exchange *request)
 {
     char cookie[64];
     size_t size = sizeof(cookie);
-    if (!request_may_change(server, request))
+    if (!connection_origin_allowed(server, request->wsi))
         return request_refuse_foreign(server, request, LOGOUT_PATH);
     if (!server->logins.openid)
         return request_answer_text(request, HTTP_STATUS_NOT_FOUND, NOT_HERE);
