@@ -136,15 +136,18 @@ static void on_end(void *arg, int recipient, const char *why, bool is_refused, i
     /* an Alertmanager message is never shortened: each message must contain all active alarms */
     is_refused = is_refused && recipient_of(notifier, recipient)->kind != NOTIFY_ALERTMANAGER;
     if (why) {
-        (is_refused ? outbox_refused : outbox_failed)(notifier->outbox, recipient, now_us());
         counter_inc(notifier->counters[recipient].failed, 1);
-        if (is_refused)
-            log_err(log,
-                    "notify: %s refuses a message: %s; the daemon now sends only its %d most urgent alarms, or drops the message if it has "
-                    "no more",
-                    id, why, OUTBOX_SHORT);
-        else if (!notifier->failing[recipient])
-            log_err(log, "notify: %s cannot be reached: %s; messages are queued and sent later", id, why);
+        if (is_refused) {
+            size_t left = outbox_refused(notifier->outbox, recipient, now_us());
+            if (left > 0)
+                log_err(log, "notify: %s refuses a message: %s; sending only the %zu most urgent alarms of the message", id, why, left);
+            else
+                log_err(log, "notify: %s refuses a message: %s; the message is dropped", id, why);
+        } else {
+            outbox_failed(notifier->outbox, recipient, now_us());
+            if (!notifier->failing[recipient])
+                log_err(log, "notify: %s cannot be reached: %s; messages are queued and sent later", id, why);
+        }
     } else {
         outbox_sent(notifier->outbox, recipient, now_us());
         /* saves the outbox at once: if the daemon were killed first, it would send the message again after its restart */

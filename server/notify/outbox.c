@@ -446,13 +446,14 @@ void outbox_failed(struct outbox *outbox, int recipient, int64_t now_us)
     }
 }
 
-void outbox_refused(struct outbox *outbox, int recipient, int64_t now_us)
+size_t outbox_refused(struct outbox *outbox, int recipient, int64_t now_us)
 {
     struct recipient_box *box = &outbox->boxes[recipient];
     assert(outbox->plant->notify->recipients[recipient].kind != NOTIFY_ALERTMANAGER);
     drop_alarms(outbox, box, box->batch_count > OUTBOX_SHORT ? OUTBOX_SHORT : 0);
     make_id(outbox, recipient, now_us);
     box->retry_us = 0;
+    return box->batch_count;
 }
 
 struct outbox_counts outbox_counts(const struct outbox *outbox, int recipient)

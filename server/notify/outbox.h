@@ -60,8 +60,8 @@ void outbox_sent(struct outbox *outbox, int recipient, int64_t now_us);
 void outbox_failed(struct outbox *outbox, int recipient, int64_t now_us);
 /* Like outbox_failed(), for a message that the recipient's server refuses in this form, so that sending it again is useless. Drops all
    but the OUTBOX_SHORT most urgent alarms of the message, which are due again at once with a new id; if the message has no more than
-   OUTBOX_SHORT alarms, drops all. Dropped alarms count as lost. Not for Alertmanager recipients. */
-void outbox_refused(struct outbox *outbox, int recipient, int64_t now_us);
+   OUTBOX_SHORT alarms, drops all. Dropped alarms count as lost. Returns how many alarms are left. Not for Alertmanager recipients. */
+size_t outbox_refused(struct outbox *outbox, int recipient, int64_t now_us);
 
 struct outbox_counts {
     int64_t waiting; /* number of alarms that wait to be sent to this recipient */

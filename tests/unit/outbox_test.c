@@ -260,14 +260,14 @@ CASE(a_refused_message_is_shortened_and_then_dropped)
     assert_true(outbox_next(f->outbox, OPS, T0 + 4 * S, &message));
     assert_int_equal(message.count, 400);
     memcpy(id, message.id, sizeof(id));
-    outbox_refused(f->outbox, OPS, T0 + 4 * S);
+    assert_int_equal(outbox_refused(f->outbox, OPS, T0 + 4 * S), OUTBOX_SHORT);
     restart(f);
     assert_true(outbox_next(f->outbox, OPS, T0 + 4 * S, &message)); /* the shortened message is due at once */
     assert_int_equal(message.count, OUTBOX_SHORT);
     assert_int_equal(message.left_out, 400 - OUTBOX_SHORT);
     assert_int_equal(message.items[OUTBOX_SHORT - 1].priority, 1); /* the most urgent alarms stay */
     assert_string_not_equal(message.id, id);
-    outbox_refused(f->outbox, OPS, T0 + 5 * S);
+    assert_int_equal(outbox_refused(f->outbox, OPS, T0 + 5 * S), 0);
     assert_int_equal(outbox_counts(f->outbox, OPS).waiting, 0);
     assert_int_equal(outbox_counts(f->outbox, OPS).lost, OUTBOX_SHORT); /* counted since the restart */
     put(f, 400, LOCAL, true, true, T0 + 6 * S, T0 + 6 * S);
