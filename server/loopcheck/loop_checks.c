@@ -362,9 +362,14 @@ void loop_checks_mirror_end(struct loop_checks *loop_checks)
 /* --- queries
    ---------------------------------------------------------------------------------------------------------------------------- */
 
-bool loop_checks_recorded(const struct loop_checks *loop_checks)
+bool loop_checks_are_mirrored(const struct loop_checks *loop_checks)
 {
-    return loop_checks->folder;
+    return !loop_checks->folder;
+}
+
+enum refusal_code loop_checks_refusal(const struct loop_checks *loop_checks)
+{
+    return !loop_checks ? REFUSAL_UNRECORDED : loop_checks_are_mirrored(loop_checks) ? REFUSAL_CORE_CHECKS : REFUSAL_NONE;
 }
 
 const struct loop_check *loop_checks_of(const struct loop_checks *loop_checks, int tag)

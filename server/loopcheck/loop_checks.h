@@ -43,8 +43,10 @@ void loop_checks_close(struct loop_checks **loop_checks);
 /* Queues a loop check for writing; once it is on disk, file_writer_collect() makes it the tag's newest check. Returns
    REFUSAL_NONE, or why it could not be queued. */
 enum refusal_code loop_checks_add(struct loop_checks *loop_checks, int tag, const struct loop_check *check);
-/* Returns true if this daemon records loop checks; false: it mirrors those of its core. */
-bool loop_checks_recorded(const struct loop_checks *loop_checks);
+/* Returns true if this daemon mirrors the loop checks of its core; false: it records its own. */
+bool loop_checks_are_mirrored(const struct loop_checks *loop_checks);
+/* Returns REFUSAL_NONE if this daemon records loop checks, or why it does not. loop_checks NULL: no history is recorded. */
+enum refusal_code loop_checks_refusal(const struct loop_checks *loop_checks);
 /* Begins to store checks that the core has recorded. all: forgets the checks stored before. begun: loop_checks_begun() of the core. */
 void loop_checks_mirror(struct loop_checks *loop_checks, bool all, bool begun);
 /* Stores one of the core's checks, after loop_checks_mirror(). */

@@ -45,7 +45,7 @@ static void take_key(struct server_context *server, const json_t *core)
 static bool take_loop_checks(const struct server_context *server, const json_t *proofs)
 {
     struct loop_checks *loop_checks = server->params.plant.loop_checks;
-    return !proofs || !loop_checks || loop_checks_recorded(loop_checks) ||
+    return !proofs || !loop_checks || !loop_checks_are_mirrored(loop_checks) ||
            loop_checks_take(loop_checks, server->session_context.plant, proofs);
 }
 

@@ -118,7 +118,9 @@ test('a loop check at the core marks tags at the renderers, which make no checks
         type === 'proofs' && begun && tags.some(([, result]) => result === 'pass')));
     const local = await a.client();
     local.say({ ...prove, seq: 3 });
-    assert.equal((await local.text('error')).code, 'no_history');
+    const { code, refusal } = await local.text('error'), list = await a.fetch('/api/v1/proofs');
+    assert.deepEqual([code, refusal.code, list.status], ['no_history', 'core_checks', 404]);
+    assert.match(await list.text(), /page of the core/);
     for (const client of [engineer, viewer, newcomer, local])
         client.close();
     await late.stop();

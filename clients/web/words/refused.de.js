@@ -69,6 +69,7 @@ linkless: dieser Kurzlink ist unbekannt oder nicht mehr gespeichert: einen neuen
 links_often: es wurden zu viele Kurzlinks erstellt; bitte in einer Minute erneut versuchen
 coreless: nicht verfügbar: der Kernserver ist nicht erreichbar; bitte erneut versuchen
 unrecorded: es wird nichts aufgezeichnet (history: record: no)
+core_checks: Loop-Checks zeichnet nur der Kernserver auf: bitte dessen Seite öffnen
 unreadable: die Aufzeichnung ist nicht lesbar; den Grund nennt das Protokoll des Servers
 token_needed: ein Token ist nötig: melden Sie sich an, oder senden Sie Authorization: Bearer TOKEN
 token_unknown: dieses Token ist unbekannt oder abgelaufen

@@ -69,6 +69,7 @@ linkless: this short link is unknown or no longer stored: ask for a new one
 links_often: too many short links were made; try again in a minute
 coreless: unavailable: the core cannot be reached; try again
 unrecorded: no history is recorded (history: record: no)
+core_checks: only the core records loop checks: open the page of the core
 unreadable: history cannot be read; the server’s log says why
 token_needed: a token is needed: sign in, or send Authorization: Bearer TOKEN
 token_unknown: this token is unknown or has expired

@@ -70,6 +70,7 @@ linkless: 이 짧은 링크는 알 수 없거나 더 이상 저장되어 있지 
 links_often: 짧은 링크를 너무 많이 만들었습니다. 1분 뒤에 다시 시도하세요
 coreless: 사용할 수 없음: 코어에 연결할 수 없습니다. 다시 시도하세요
 unrecorded: 이력을 기록하지 않습니다 (history: record: no)
+core_checks: 루프체크는 코어에서만 기록합니다. 코어의 페이지를 여세요
 unreadable: 기록을 읽을 수 없습니다. 이유는 서버 로그에 있습니다
 token_needed: 토큰이 필요합니다. 로그인하거나 Authorization: Bearer TOKEN을 보내세요
 token_unknown: 알 수 없거나 만료된 토큰입니다

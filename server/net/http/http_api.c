@@ -363,8 +363,9 @@ int api_devices(struct server_context *server, struct http_exchange *request)
 int api_loop_checks(struct server_context *server, struct http_exchange *request)
 {
     struct text text = { 0 };
-    if (!server->params.plant.loop_checks || !loop_checks_recorded(server->params.plant.loop_checks))
-        return request_refuse(request, HTTP_STATUS_NOT_FOUND, REFUSAL_UNRECORDED);
+    enum refusal_code why = loop_checks_refusal(server->params.plant.loop_checks);
+    if (why)
+        return request_refuse(request, HTTP_STATUS_NOT_FOUND, why);
     loop_checks_print(server->params.plant.loop_checks, &text);
     return request_answer(request, HTTP_STATUS_OK, "text/csv; charset=utf-8", text.at, text.length,
                           "content-disposition:", "attachment; filename=\"proofs.csv\"");

@@ -109,8 +109,9 @@ bool session_save_tags(struct session *session, const struct message *message, s
 bool session_check_loop(struct session *session, const struct message *message, struct message_error *error)
 {
     const struct session_context *context = session->context;
-    if (!context->services->loop_checks || !loop_checks_recorded(context->services->loop_checks)) {
-        message_refuse(error, "no_history", "loop checks need recorded history: start plantcastd with --history DIR", REFUSAL_UNRECORDED);
+    enum refusal_code why = loop_checks_refusal(context->services->loop_checks);
+    if (why) {
+        message_refuse(error, "no_history", NULL, why);
         return false;
     }
     const struct kept_action action = session_kept_begin(session);
