@@ -20,8 +20,9 @@ static const char *const parts[] = { "", "-wal", "-shm" };
 /* CUT_BYTES: maximum number of bytes deleted from a month in one call, because the recording thread has to wait */
 enum { PARTS = sizeof(parts) / sizeof(parts[0]), CUT_BYTES = 16000000 };
 static const int64_t NEWEST_US = 600 * US_PER_S; /* the size limit never deletes the last ten minutes of history */
-/* The limit on age is not applied for WEEK_NS after a jump of the clock by more than WEEK_NS. */
-static const int64_t WEEK_NS = 7 * 86400 * NS_PER_S;
+/* Limits on age are not applied for KEEP_AFTER_JUMP_NS after the clock was set forward by more than JUMP_US, or after nothing was
+   recorded for more than JUMP_US. */
+static const int64_t JUMP_US = 7 * 86400 * US_PER_S, KEEP_AFTER_JUMP_NS = 7 * 86400 * NS_PER_S;
 /* fraction of the size limit that is freed in addition when the limit is exceeded, so that it is not soon exceeded again */
 #define CUT_BELOW 0.01
 
@@ -154,10 +155,10 @@ static bool has_pause(struct log *log, const char *folder, int64_t now_us)
     int *months = month_list(folder, &count), seen = 0;
     int64_t since_us = now_us, first_us, last_us;
     bool pause = false;
-    for (size_t i = count; i > 0 && (seen < 2 || since_us > now_us - WEEK_NS / 1000) && !pause; i--) {
+    for (size_t i = count; i > 0 && (seen < 2 || since_us > now_us - KEEP_AFTER_JUMP_NS / 1000) && !pause; i--) {
         if (!span_of(log, folder, months[i - 1], &first_us, &last_us) || first_us > now_us)
             continue;
-        pause = since_us - last_us > WEEK_NS / 1000;
+        pause = since_us - last_us > JUMP_US;
         since_us = first_us;
         seen++;
     }
@@ -168,11 +169,11 @@ static bool has_pause(struct log *log, const char *folder, int64_t now_us)
 bool retention_by_age(struct retention_clock *clock, struct log *log, const char *folder, int64_t mono_ns, int64_t utc_ns)
 {
     const int64_t ahead_ns = utc_ns - mono_ns;
-    if (clock->looked ? ahead_ns - clock->ahead_ns > WEEK_NS : has_pause(log, folder, utc_ns / 1000))
-        clock->resumes_ns = mono_ns + WEEK_NS;
-    clock->looked = true;
+    if (clock->was_called ? ahead_ns - clock->ahead_ns > JUMP_US * 1000 : has_pause(log, folder, utc_ns / 1000))
+        clock->applies_from_ns = mono_ns + KEEP_AFTER_JUMP_NS;
+    clock->was_called = true;
     clock->ahead_ns = ahead_ns;
-    return mono_ns >= clock->resumes_ns;
+    return mono_ns >= clock->applies_from_ns;
 }
 
 /* Deletes the files of a whole month, and adds its number of unsent points (`waiting`) to *unsent. Returns false if its file

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Retention of history: deletes whole months that are too old or exceed the size limit, or only the oldest points of a month.
-   The last ten minutes are never deleted. Call only in the recording thread, unless stated otherwise. */
+   The last ten minutes are never deleted. Call only retention_by_age() outside the recording thread. */
 #ifndef HISTORY_RETENTION_H
 #define HISTORY_RETENTION_H
 #include <stdbool.h>
@@ -13,15 +13,17 @@ struct retention_limits {
     /* true: points in the outboxes are sent to PostgreSQL (month_outbox.h); a month with unsent points is kept despite its age */
     bool sends;
 };
+
+struct retention_clock {     /* detects a clock that was set far forward; zero-initialise */
+    bool was_called;         /* true: retention_by_age() was called */
+    int64_t ahead_ns;        /* UTC minus monotonic time at the last call */
+    int64_t applies_from_ns; /* monotonic time from which on the limits on age are applied */
+};
+
 /* Deletes history that exceeds the limits: whole months (logged), or up to 16 MB of a month per call. Call it every minute.
    Returns the remaining size on disk in bytes. *unsent receives the number of points deleted before they were sent to
    PostgreSQL (logged). */
 int64_t retention_apply(struct log *log, const char *folder, const struct retention_limits *limits, int64_t now_us, int64_t *unsent);
-struct retention_clock { /* detects a clock that was set far forward; zero-initialise */
-    bool looked;         /* retention_by_age() was called */
-    int64_t ahead_ns;    /* UTC minus monotonic time at the last call */
-    int64_t resumes_ns;  /* monotonic time from which on the limits on age are applied */
-};
 /* Returns true if history and rows of the alarm journal may be deleted for their age. Returns false for a week of monotonic time after
    the clock was set forward by more than a week since the last call. After the first call, also returns false for a week if the
    history has a pause of more than a week that lasts until utc_ns, ended within the week before, or lies between the newest two
