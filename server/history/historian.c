@@ -14,6 +14,7 @@
 #include "base/clock.h"
 #include "base/files/database.h"
 #include "base/mem.h"
+#include "base/text/timestamp.h"
 #include "base/thread.h"
 #include "history/copy.h"
 #include "history/history.h"
@@ -530,14 +531,28 @@ static int tidy_sometimes(struct historian *historian, int64_t mono_ns)
     return month_file_tidy(historian->file);
 }
 
+static void warn_of_jump(struct historian *historian)
+{
+    static const char kept[] = "history: nothing older than keep_days is deleted for a week, because";
+    const struct retention_clock *clock = &historian->retention_clock;
+    char from[TIMESTAMP_BYTES], to[TIMESTAMP_BYTES];
+    if (!clock->pause_to_us) {
+        log_warn(historian->log, "%s the clock of this machine was set forward by more than a week; check the clock", kept);
+        return;
+    }
+    timestamp_print(clock->pause_from_us, from);
+    timestamp_print(clock->pause_to_us, to);
+    log_warn(historian->log, "%s the history has no readings from %s to %s; if the clock is wrong, correct it within the week", kept, from,
+             to);
+}
+
 /* Returns true if no month must be deleted for its age, because the clock may have been set far forward. Logs the first such result. */
 static bool keeps_old(struct historian *historian, int64_t mono_ns, int64_t utc_ns)
 {
     bool kept_old = historian->keeps_old;
     historian->keeps_old = !retention_by_age(&historian->retention_clock, historian->log, historian->folder, mono_ns, utc_ns);
     if (historian->keeps_old && !kept_old && historian->plant->history.keep_days > 0)
-        log_warn(historian->log, "history: nothing older than keep_days is deleted for a week, because the clock of this machine was set"
-                                 " forward, or nothing was recorded for more than a week; check the clock");
+        warn_of_jump(historian);
     return historian->keeps_old;
 }
 

@@ -147,30 +147,36 @@ static bool span_of(struct log *log, const char *folder, int month, int64_t *fir
     return *first_us <= *last_us;
 }
 
-/* Returns true if the history has a pause of more than a week before the present, one that ended within the last week, or one between
-   its newest two months. Skips months of the future: they are left from a clock that was set back. */
-static bool has_pause(struct log *log, const char *folder, int64_t now_us)
+/* Finds a pause of the history of more than a week: before the present, one that ended within the last week, or one between the newest
+   two months. Skips months of the future: they are left from a clock that was set back. Returns false if there is none. */
+static bool find_pause(struct log *log, const char *folder, int64_t now_us, int64_t *from_us, int64_t *to_us)
 {
     size_t count;
     int *months = month_list(folder, &count), seen = 0;
     int64_t since_us = now_us, first_us, last_us;
-    bool pause = false;
-    for (size_t i = count; i > 0 && (seen < 2 || since_us > now_us - KEEP_AFTER_JUMP_NS / 1000) && !pause; i--) {
+    bool found = false;
+    for (size_t i = count; i > 0 && (seen < 2 || since_us > now_us - KEEP_AFTER_JUMP_NS / 1000) && !found; i--) {
         if (!span_of(log, folder, months[i - 1], &first_us, &last_us) || first_us > now_us)
             continue;
-        pause = since_us - last_us > JUMP_US;
+        found = since_us - last_us > JUMP_US;
+        *from_us = last_us;
+        *to_us = since_us;
         since_us = first_us;
         seen++;
     }
     mem_free(months);
-    return pause;
+    return found;
 }
 
 bool retention_by_age(struct retention_clock *clock, struct log *log, const char *folder, int64_t mono_ns, int64_t utc_ns)
 {
     const int64_t ahead_ns = utc_ns - mono_ns;
-    if (clock->was_called ? ahead_ns - clock->ahead_ns > JUMP_US * 1000 : has_pause(log, folder, utc_ns / 1000))
+    int64_t from_us = 0, to_us = 0;
+    if (clock->was_called ? ahead_ns - clock->ahead_ns > JUMP_US * 1000 : find_pause(log, folder, utc_ns / 1000, &from_us, &to_us)) {
         clock->applies_from_ns = mono_ns + KEEP_AFTER_JUMP_NS;
+        clock->pause_from_us = from_us;
+        clock->pause_to_us = to_us;
+    }
     clock->was_called = true;
     clock->ahead_ns = ahead_ns;
     return mono_ns >= clock->applies_from_ns;

@@ -18,6 +18,8 @@ struct retention_clock {     /* detects a clock that was set far forward; zero-i
     bool was_called;         /* true: retention_by_age() was called */
     int64_t ahead_ns;        /* UTC minus monotonic time at the last call */
     int64_t applies_from_ns; /* monotonic time from which on the limits on age are applied */
+    /* UTC time without records for which the limits on age are not applied; both 0: the clock was set while the daemon was running */
+    int64_t pause_from_us, pause_to_us;
 };
 
 /* Deletes history that exceeds the limits: whole months (logged), or up to 16 MB of a month per call. Call it every minute.

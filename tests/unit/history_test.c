@@ -1113,7 +1113,10 @@ CASE(a_jump_before_the_end_of_a_month_deletes_nothing_for_a_week)
     record(s, NOVEMBER, 100);
     record(s, border_us - day_us, 100);
     record(s, border_us, 100);
-    assert_false(retention_by_age(&(struct retention_clock){ 0 }, s->log, s->folder, 0, (border_us + 5 * day_us) * 1000));
+    struct retention_clock clock = { 0 };
+    assert_false(retention_by_age(&clock, s->log, s->folder, 0, (border_us + 5 * day_us) * 1000));
+    assert_int_equal(clock.pause_from_us, NOVEMBER + 99 * S);
+    assert_int_equal(clock.pause_to_us, border_us - day_us);
     assert_true(retention_by_age(&(struct retention_clock){ 0 }, s->log, s->folder, 0, (border_us + 6 * day_us + S) * 1000));
 }
 
