@@ -215,6 +215,11 @@ test('a command fails if its output cannot be written', { skip, timeout: 100000 
         assert.match(stderr, /: standard output could not be written(: No space left on device)?\n$/, what);
     }
     assert.equal(readFileSync(tokens, 'utf8'), '', 'no token stays that nobody has seen');
+    const toClosedPipe = 'mkfifo "$1.pipe" && exec 3<>"$1.pipe" 4>"$1.pipe" 3<&- && exec "$0" token add "$1" --role viewer --name x >&4';
+    const { status, stderr } = spawnSync('sh', ['-c', toClosedPipe, join(BIN, 'plantcast'), tokens], { encoding: 'utf8' });
+    assert.equal(status, 1, stderr);
+    assert.match(stderr, /the new token could not be printed and was removed again/);
+    assert.equal(readFileSync(tokens, 'utf8'), '', 'no token stays whose reader has gone');
 });
 
 test('a snapshot without a daemon marks tags that have not passed their loop check', { skip }, async () => {

@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <getopt.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -148,7 +149,8 @@ static bool has_name(const char *lines, const char *name)
     return false;
 }
 
-static int take_back(const char *path, const char *name)
+/* Removes the token with this name from the file. Returns 0 or the exit code, with the reason printed. */
+static int revoke_token(const char *path, const char *name)
 {
     char *old = read_file(path, false);
     struct text text = { 0 };
@@ -179,6 +181,7 @@ static int add_token(const char *path, struct token_holder *holder)
     int result = 1;
     if (!old)
         return 1;
+    signal(SIGPIPE, SIG_IGN); /* a token that nobody reads from a closed pipe must be removed again */
     if (has_name(old, holder->name)) {
         fail_at(path, "a token with this name exists: revoke that token, or choose another name");
     } else if (!tokens_make(token)) {
@@ -190,9 +193,9 @@ static int add_token(const char *path, struct token_holder *holder)
         result = write_file(path, &text);
     }
     if (result == 0 && (puts(token) == EOF || fflush(stdout) != 0)) {
-        fail_at(path, "the new token could not be printed and was removed again");
-        take_back(path, holder->name);
-        result = 1;
+        result = fail_at(path, revoke_token(path, holder->name)
+                                   ? "the new token could not be printed, and is still valid: revoke it with `plantcast token revoke`"
+                                   : "the new token could not be printed and was removed again");
     }
     text_finish(&text);
     mem_free(old);
@@ -282,7 +285,7 @@ int cmd_token(int argc, char **argv)
     if (count == 2 && !strcmp(what, "list"))
         return list(path);
     if (count == 3 && !strcmp(what, "revoke"))
-        return take_back(path, argv[optind + 2]);
+        return revoke_token(path, argv[optind + 2]);
     print_usage(stderr);
     return 2;
 }
