@@ -184,7 +184,7 @@ test('history export continues after a tag that the plant lacks, and reads tag n
     await record('TI-1', 'TI-2');
     const names = join(plant.folder, 'names'), lists = (list) => run('history', 'export', plant.file, '--tags', list);
     const tags = (out) => [...new Set(out.match(/^TI-\d(?=,)/gm))];
-    writeFileSync(names, 'TI-1\r\n\nGONE\nTI-2\n');
+    writeFileSync(names, '\uFEFFTI-1\r\n\nGONE\nTI-2\n');
     for (const list of ['TI-1,GONE,TI-2', `@${names}`]) {
         const { code, out, err } = await lists(list);
         assert.deepEqual([code, tags(out), err], [1, ['TI-1', 'TI-2'], `plantcast: ${plant.file}: the plant has no tag 'GONE'\n`]);

@@ -169,7 +169,8 @@ static int run_import(const struct history_options *options, const struct plant 
 
 /* --- export --------------------------------------------------------------------------------------------------------------------- */
 
-/* Prints the readings of a tag. Returns false if the readings cannot be read or, with ferror(stdout), printed. */
+/* Prints the readings of a tag. Returns false if the readings cannot be read (logged), or if standard output cannot be written:
+   ferror(stdout) tells the two apart. */
 static bool export_tag(struct history_reader *reader, const struct plant_tag *tag, int64_t from_us, int64_t to_us, int points,
                        int *was_buckets)
 {
@@ -198,6 +199,8 @@ static char *read_names(const char *option, const char **separators)
     if (!names)
         fprintf(stderr, "plantcast: --tags %s: %s\n", option, strerror(errno));
     *separators = is_file ? "\r\n" : ",";
+    if (names && is_file && !strncmp(names, "\xEF\xBB\xBF", 3)) /* the byte order mark of a file from Windows */
+        memset(names, '\n', 3);
     return names;
 }
 
