@@ -4,7 +4,7 @@
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { once } from 'node:events';
-import { appendFileSync, copyFileSync, existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { appendFileSync, copyFileSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { connect, createServer } from 'node:net';
 import { join } from 'node:path';
 import { after, afterEach, test } from 'node:test';
@@ -237,6 +237,12 @@ test('a snapshot without a daemon marks tags that have not passed their loop che
     writeFileSync(join(history, 'proofs.csv'), 'Time,Tag Name,Result,Value,Unit,Expected,Tolerance,By,Remark,Fingerprint\n' +
         '2026-01-01T00:00:00Z,"TI-1",fail,1,"°C",2,0.5,"kim","",0123456789abcdef\n');
     assert.notDeepEqual(await draw(), before);
+    const recording = readFileSync(plant.file, 'utf8');
+    writeFileSync(plant.file, `${recording.trimEnd()}\nhistory: { record: no }\n`);
+    const unrecorded = await draw();
+    rmSync(join(history, 'proofs.csv'));
+    assert.deepEqual(await draw(), unrecorded, 'a plant without history has no loop checks');
+    writeFileSync(plant.file, recording);
 });
 
 const film = (url, ...more) => ['clip', url, '-o', join(plant.folder, 'film.mp4'), '--from', '-20s', '--to', '-10s', '--speed', '10',

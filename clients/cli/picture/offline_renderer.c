@@ -135,6 +135,8 @@ bool offline_renderer_open_plant(struct offline_renderer *offline, struct snapsh
 
 static void open_loop_checks(struct offline_renderer *offline, const struct snapshot_options *options)
 {
+    if (offline->plant->history.off)
+        return;
     char *folder = options->history ? mem_strdup(options->history) : plant_recorded_folder(offline->plant);
     offline->loop_checks = loop_checks_open(offline->log, offline->plant, folder, NULL);
     mem_free(folder);
