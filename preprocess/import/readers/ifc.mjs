@@ -7,7 +7,7 @@ import { existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { basename, dirname, extname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { GlbWriter, relativeTo } from './glb_writer.mjs';
-import { collectErrors, findDamaged, findLosses, misplacedLines, partlyLostLines } from './ifc_losses.mjs';
+import { collectErrors, findDamaged, findLosses, misplacedLines, partlyLostLines, wrongIndexLines, wrongIndices } from './ifc_losses.mjs';
 import { openingLines, uncutOpenings } from './ifc_openings.mjs';
 import { readSolids, takeSolids, withPlacements } from './ifc_solids.mjs';
 
@@ -32,16 +32,19 @@ class Model {
         this.lines = new Map();
     }
 
-    line(id) {
-        if (!this.lines.has(id)) {
-            let line = null;
-            try {
-                line = this.api.GetLine(this.id, id);
-            } catch {
-                line = null; // null: the file refers to this id but has no statement with it
-            }
-            this.lines.set(id, line);
+    // Returns a statement, or null if the file refers to this id but has no statement with it.
+    lineOnce(id) {
+        try {
+            return this.api.GetLine(this.id, id);
+        } catch {
+            return null;
         }
+    }
+
+    // Like lineOnce(), but keeps the statement for the next call.
+    line(id) {
+        if (!this.lines.has(id))
+            this.lines.set(id, this.lineOnce(id));
         return this.lines.get(id);
     }
 
@@ -255,8 +258,10 @@ async function main([input, output, , , , encoding]) {
     const isShown = (element) => drawn.has(element) || NOT_SHOWN.has(model.classOf(element));
     const { lost, lines, ids, drawn: drawnInstead } = findLosses(model, webIfc.IFCPRODUCT, isShown, solids.failed);
     const withoutPlace = [...geometry.unplaced.keys()].filter((element) => drawn.has(element));
+    const wrongFaces = [webIfc.IFCPOLYGONALFACESET, webIfc.IFCTRIANGULATEDFACESET].flatMap((type) => wrongIndices(model, type));
     askForSolids(join(dirname(output), 'asked.txt'), [...ids, ...withoutPlace, ...incomplete.keys(),
-        ...findDamaged(model, webIfc.IFCPRODUCT, errors.at()), ...uncut.flatMap(({ opening, elements }) => [opening, ...elements])]);
+        ...findDamaged(model, webIfc.IFCPRODUCT, new Set([...errors.at(), ...wrongFaces])),
+        ...uncut.flatMap(({ opening, elements }) => [opening, ...elements])]);
     if (drawn.size > 0)
         writeFileSync(output, glb.finished());
     const openings = [...model.ofType(webIfc.IFCRELVOIDSELEMENT)].length - uncut.length;
@@ -266,7 +271,7 @@ async function main([input, output, , , , encoding]) {
         lines.slice(0, MAX_NAMED).join(', ')}${
         lines.length > MAX_NAMED ? ', ...' : ''}`.replace(/[\t\n]/g, ' ')] : [],
     ...lost, ...partlyLostLines(model, withoutPlace.map((element) => [element, geometry.unplaced.get(element).length]), incomplete),
-    ...openingLines(model, uncut), ...drawnInstead,
+    ...wrongIndexLines(model, wrongFaces.filter((set) => !solids.failed.has(set))), ...openingLines(model, uncut), ...drawnInstead,
     ...misplacedLines(model, types, isShown, solids.failed), ...errors.lines(model, solids), ''].join('\n'));
     if (drawn.size === 0)
         throw new Error(`the IFC file contains no surface${lost.length > 0 ? `: ${lost.length} elements have no triangles, such as ` +

@@ -68,6 +68,25 @@ function itemsOf(model, shape) {
     return [...items];
 }
 
+// Returns the ids of the face sets of this type that have an index outside of their list of points. web-ifc does not check
+// indices, and reads whatever lies next to the points.
+export function wrongIndices(model, type) {
+    const numbers = (value) => [value ?? []].flat(Infinity).map((one) => Number(one?.value ?? one));
+    return [...model.ofType(type)].filter((id) => {
+        const set = model.lineOnce(id), points = model.lineOnce(set?.Coordinates?.value)?.CoordList?.length ?? 0;
+        const table = numbers(set?.PnIndex), isWrong = (most) => (index) => !(index >= 1 && index <= most);
+        const faces = [set, ...[set?.Faces ?? []].flat().map(({ value }) => model.lineOnce(value))];
+        return table.some(isWrong(points)) || faces.some((face) =>
+            [...numbers(face?.CoordIndex), ...numbers(face?.InnerCoordIndices)].some(isWrong(table.length || points)));
+    });
+}
+
+// Returns lines of the reader's output that name face sets with wrong indices. Format: error records of findings.h.
+export function wrongIndexLines(model, ids) {
+    return ids.length === 0 ? [] : [fields('error', ids.length, `a face has an index outside of the list of points: ${
+        [...ids.slice(0, MAX_IDS).map((id) => `#${id} ${model.classOf(id)}`), ...ids.length > MAX_IDS ? ['...'] : []].join(', ')}`)];
+}
+
 // Returns the elements whose shapes contain statements with web-ifc errors.
 export function findDamaged(model, product, errors) {
     const known = new Map(), isDamaged = (item) => {
