@@ -140,7 +140,7 @@ test('shelving needs a reason and hides the alarm', options, async () => {
     await page.locator('#shelve button[type="submit"]').click();
     const row = page.locator(`#alarms-aside tr[data-alarm="${id}"]`);
     await row.waitFor();
-    await row.filter({ hasText: /Shelved.*until \d\d:\d\d, by local, transmitter is being changed/s }).waitFor();
+    await row.filter({ hasText: /Shelved.*until (?:\w{3} \d+ )?\d\d:\d\d, by local, transmitter is being changed/s }).waitFor();
     await row.locator('button[data-action="unshelve"]').click();
     /* after unshelving, the alarm is listed as one that calls for attention, like a new one */
     await page.locator(`#alarms-list tr[data-alarm="${id}"].calls`).waitFor();
