@@ -162,6 +162,7 @@ test('an error in one pane does not stop the panes after it; a tag that a pane\'
     await own.waitForFunction((before) => document.querySelector('.clock b').textContent !== before, clock);
     await own.locator('.pane.alarms > .failure', { hasText: 'out of date' }).waitFor();
     assert.equal(await own.locator('.failure').count(), 1);
+    await shoot(own, 'wall-display-error');
     await own.evaluate(() => globalThis.restore());
     await own.waitForFunction(() => !document.querySelector('.failure'));
     await plant.ask('set PI-1 5');
