@@ -20,7 +20,7 @@ struct held {
     bool dead;
     /* true: the reading comes from the plant before a reload or from a core, or is undated (store_write_undated()). The tag's next
        sample replaces it, however old that sample is. */
-    bool carried;
+    bool replaceable;
     int64_t sampled_mono_ns;                   /* monotonic time of the tag's last sample, whether Good or Bad */
     /* arrival time of the tag's last usable value: received_mono_ns: on the monotonic clock; received_utc_ns: in UTC */
     int64_t received_mono_ns, received_utc_ns;
@@ -127,7 +127,7 @@ static void adopt_tag(struct store *store, const struct store *before, size_t ta
     struct held *to = &store->tags[tag];
     const struct held own = *to;
     *to = before->tags[plant_find_tag(before->plant, store->plant->tags[tag].name)];
-    to->carried = true;
+    to->replaceable = true;
     /* does not take over the alarm of the old reading: limits may have changed, and the alarm service sets the alarm again */
     to->alarm = own.alarm;
     to->alarm_status = own.alarm_status;
@@ -300,8 +300,8 @@ static bool hold(struct store *store, const struct sample *sample, bool is_undat
 {
     struct held *held = &store->tags[sample->tag];
     bool bad = quality_is_bad(sample->quality), finite = isfinite(sample->value), value_changed = false;
-    if (held->carried) {
-        /* a store of a core's readings had no limits of its own (mirror()) */
+    if (held->replaceable) {
+        /* a reading from a core had no limits of its own (mirror()) */
         set_limits(held, &store->plant->tags[sample->tag].validity);
     } else if (now_mono_ns < held->sampled_mono_ns) {
         /* Ignores a sample older than the tag's last sample, with one exception: the tag was marked dead (its source was lost),
@@ -310,7 +310,7 @@ static bool hold(struct store *store, const struct sample *sample, bool is_undat
             return false;
         now_mono_ns = held->sampled_mono_ns;
     }
-    held->carried = is_undated;
+    held->replaceable = is_undated;
     held->quality = bad || finite ? sample->quality : QUALITY_BAD_SENSOR_FAILURE;
     held->sampled_mono_ns = now_mono_ns;
     held->lost = held->dead = false;
@@ -374,7 +374,7 @@ static void mirror(struct store *store, const struct mirrored *reading, int64_t 
     held->received_utc_ns = reading->received_utc_ns;
     held->sampled_mono_ns = held->changed_mono_ns = now_mono_ns;
     held->lost = held->dead = false;
-    held->carried = true;
+    held->replaceable = true;
     /* a reading that comes from a core (the daemon that reads the devices) never becomes stale in this store: the core decides its
        quality. If this daemon takes over from that core, the tag's first sample sets the limits again (hold()). */
     held->stale_ns = held->flatline_ns = INT64_MAX;
