@@ -38,8 +38,9 @@ void stamped_writer_begin(struct stamped_writer *writer, int64_t now_mono_ns, in
    changed since, so its quality is Uncertain_LastUsableValue at best. A time ahead of our clock is replaced by the current time. A time
    before that of the tag's last sample is replaced by that sample's time if in_order is set; otherwise the store ignores the sample. */
 void stamped_writer_add(struct stamped_writer *writer, int tag, const struct stamped_value *value, bool was_kept, bool in_order);
-/* Makes a tag Bad from now on. If the sender stated the time of the tag's last sample, the Bad quality instead counts from that time. If
-   it stated none yet, the tag's next value is used even if its stated time is earlier: the sender's clock may be behind ours. */
+/* Makes a tag Bad from now on. If the sender stated the time of the tag's last sample, the Bad quality instead counts from that time.
+   Otherwise, the Bad sample is undated: the tag's next value is used even if its stated time is earlier, because the sender's clock may
+   be behind ours. */
 void stamped_writer_add_bad(struct stamped_writer *writer, int tag, uint32_t quality);
 /* Call after all values of a message have been added: writes the last batch of samples to the store. */
 void stamped_writer_end(struct stamped_writer *writer);
