@@ -137,7 +137,7 @@ static void open_loop_checks(struct offline_renderer *offline, const struct snap
 {
     if (offline->plant->history.off)
         return;
-    char *folder = options->history ? mem_strdup(options->history) : plant_recorded_folder(offline->plant);
+    char *folder = snapshot_options_folder(options, offline->plant);
     offline->loop_checks = loop_checks_open(offline->log, offline->plant, folder, NULL);
     mem_free(folder);
 }
@@ -163,7 +163,7 @@ int offline_renderer_reopen(struct offline_renderer *offline, struct snapshot_op
 
 bool offline_renderer_open_history(struct offline_renderer *offline, const struct snapshot_options *options)
 {
-    char *folder = options->history ? mem_strdup(options->history) : plant_recorded_folder(offline->plant);
+    char *folder = snapshot_options_folder(options, offline->plant);
     offline->history = folder;
     offline->reader = history_reader_create(offline->log, folder);
     offline->tags = history_tags(offline->plant);

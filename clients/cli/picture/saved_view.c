@@ -108,7 +108,7 @@ bool saved_view_add_from_daemon(struct snapshot_options *options, bool present)
 
 bool saved_view_add_from_plant(struct snapshot_options *options, struct log *log, const struct plant *plant)
 {
-    char *folder = options->history ? mem_strdup(options->history) : plant_recorded_folder(plant);
+    char *folder = snapshot_options_folder(options, plant);
     struct named_views *views = named_views_open(log, plant, folder, NULL);
     json_t *message = named_views_message(views, NULL);
     const json_t *view = find_or_print(options, json_object_get(message, "list"));

@@ -9,6 +9,7 @@
 #include "base/text/text.h"
 #include "gpu/gl.h"
 
+struct plant;
 struct daemon_access; /* clients/link/daemon.h */
 
 enum { SNAPSHOT_MAX = 64 };
@@ -48,6 +49,8 @@ struct snapshot_options {
 int snapshot_parse(int argc, char **argv, bool clip, struct snapshot_options *options);
 /* Frees the memory that *options owns. */
 void snapshot_options_finish(struct snapshot_options *options);
+/* Returns the history folder: the one on the command line, otherwise the plant's. The caller frees it. */
+char *snapshot_options_folder(const struct snapshot_options *options, const struct plant *plant);
 /* Appends the options as `&name=value...`, URL-encoded, to the query of a request to a daemon. Returns false, with the reason
    printed, if daemons do not support one of the options. */
 bool snapshot_query(struct snapshot_options *options, struct text *query);

@@ -10,6 +10,7 @@
 #include "base/clock.h"
 #include "base/mem.h"
 #include "base/text/timestamp.h"
+#include "plant/plant.h"
 
 static const char snapshot_usage[] =
     "usage: plantcast snapshot (PLANT.yaml | http://HOST:PORT/) -o OUT.png [OPTION ...]\n"
@@ -380,6 +381,11 @@ int snapshot_parse(int argc, char **argv, bool clip, struct snapshot_options *op
     if (options->speed <= 0)
         options->speed = options->tour ? 1 : 60;
     return code;
+}
+
+char *snapshot_options_folder(const struct snapshot_options *options, const struct plant *plant)
+{
+    return options->history ? mem_strdup(options->history) : plant_recorded_folder(plant);
 }
 
 void snapshot_options_finish(struct snapshot_options *options)
