@@ -331,7 +331,7 @@ test('a token restricted to one view shows that view and no other; revoking the 
             // waits 6 s: a client that was permitted to list views would request them every 5 s, and this one must not
             await new Promise((done) => setTimeout(done, 6000));
             assert.equal(count(), refused);
-            assert.ok(reader.frames.slice(reader.frames.findIndex(({ card }) => !card)).every(({ card }) => !card), 'a card');
+            assert.doesNotMatch(program.said, /rejects this token|not allowed/);
             assert.equal(runProgram('plantcast', ['token', 'revoke', tokens, 'lobby']).code, 0);
             await reader.until(({ card }) => card);
         }
