@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <xxhash.h>
 
 static bool fits(uint64_t offset, uint64_t bytes, size_t size)
 {
@@ -64,6 +65,11 @@ const struct influence_entry *influence_find(const struct influence_view *view, 
         if (view->entries[i].group == group && view->entries[i].interpolation == interpolation)
             return &view->entries[i];
     return NULL;
+}
+
+uint32_t influence_columns_hash(const uint32_t *columns, size_t count)
+{
+    return XXH32(columns, count * sizeof(*columns), 0);
 }
 
 const void *influence_array(const struct influence_view *view, uint64_t offset)

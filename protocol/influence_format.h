@@ -7,7 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define INFLUENCE_MAGIC "PLCINFL3" /* includes the format's version */
+#define INFLUENCE_MAGIC "PLCINFL4" /* includes the format's version */
 
 struct influence_header {
     uint32_t entry_count, vertex_count;
@@ -27,7 +27,7 @@ struct influence_entry {
     uint32_t group, interpolation;
     /* number of the group's sensors with a known position; the arrays of this struct have them in the order of the asset file */
     uint32_t sensor_count;
-    uint32_t zero;
+    uint32_t columns_hash; /* influence_columns_hash() of these sensors */
     /* offsets of the arrays double[sensor][sensor] (precision) and float[sensor][vertex] (shares: the weights) */
     uint64_t precision, shares;
     /* for interpolation gp: offset of float[2][vertex], the standard deviations of the interpolated values, with all sensors and without
@@ -54,6 +54,9 @@ struct influence_view {
 bool influence_view_init(struct influence_view *view, const void *bytes, size_t size, uint32_t vertex_count, char why[200]);
 /* Returns the entry of a group and an interpolation, owned by the view. NULL: the file has none. */
 const struct influence_entry *influence_find(const struct influence_view *view, uint32_t group, uint32_t interpolation);
+/* Returns a hash of the indices that an entry's sensors have in the asset file. It distinguishes them from as many other sensors of the
+   asset. */
+uint32_t influence_columns_hash(const uint32_t *columns, size_t count);
 /* Returns a pointer to an array of an entry; offset: the member of the entry that says where the array is. */
 const void *influence_array(const struct influence_view *view, uint64_t offset);
 

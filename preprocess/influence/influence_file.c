@@ -42,18 +42,33 @@ struct influence_making {
     size_t capacity, found_capacity;
 };
 
-/* Finds the sensors of a group that have a position on the asset. Returns their number; *places_m receives their positions,
- * which the caller frees (mem_free). */
-static size_t places_of(const struct influence_input *input, int group, double (**places_m)[3])
+/* the sensors of a group that have a known position on the asset */
+struct group_sensors {
+    int group;
+    size_t count;
+    double (*places_m)[3];
+    uint32_t *columns; /* their indices in the asset file */
+};
+
+static struct group_sensors sensors_of(const struct influence_input *input, int group)
 {
-    size_t count = 0;
-    *places_m = mem_array(input->sensor_count, sizeof(**places_m));
+    struct group_sensors sensors = { .group = group };
+    sensors.places_m = mem_array(input->sensor_count, sizeof(*sensors.places_m));
+    sensors.columns = mem_array(input->sensor_count, sizeof(*sensors.columns));
     for (size_t i = 0; i < input->sensor_count; i++) {
         const struct plant_tag *tag = &input->plant->tags[input->sensors[i].tag];
-        if (tag->group == group && !tag->place.assumed)
-            memcpy((*places_m)[count++], input->places_m[i], sizeof(**places_m));
+        if (tag->group != group || tag->place.assumed)
+            continue;
+        sensors.columns[sensors.count] = (uint32_t)i;
+        memcpy(sensors.places_m[sensors.count++], input->places_m[i], sizeof(*sensors.places_m));
     }
-    return count;
+    return sensors;
+}
+
+static void group_sensors_finish(struct group_sensors *sensors)
+{
+    mem_free(sensors->places_m);
+    mem_free(sensors->columns);
 }
 
 bool influence_is_wanted(const struct plant *plant, const struct plant_sensor *sensors, size_t sensor_count)
@@ -69,15 +84,12 @@ static const struct plant_asset *asset_of(const struct influence_input *input)
     return &input->plant->assets[input->plant->tags[input->sensors[0].tag].asset];
 }
 
-/* Returns the names of the sensors that places_of() finds, in the same order. The caller frees the list (mem_free). */
-static const char **names_of(const struct influence_input *input, int group)
+/* Returns the names of a group's sensors. The caller frees the list (mem_free). */
+static const char **names_of(const struct influence_input *input, const struct group_sensors *sensors)
 {
-    const char **names = mem_array(input->sensor_count, sizeof(*names));
-    for (size_t i = 0, count = 0; i < input->sensor_count; i++) {
-        const struct plant_tag *tag = &input->plant->tags[input->sensors[i].tag];
-        if (tag->group == group && !tag->place.assumed)
-            names[count++] = tag->name;
-    }
+    const char **names = mem_array(sensors->count, sizeof(*names));
+    for (size_t i = 0; i < sensors->count; i++)
+        names[i] = input->plant->tags[input->sensors[sensors->columns[i]].tag].name;
     return names;
 }
 
@@ -98,10 +110,11 @@ static void take_defaults(const struct influence_making *making, const struct pl
 
 /* Determines the parameters of a group's Gaussian process: takes them from the plant file, and fits those that it omits to the
  * readings file it names. */
-static bool find_params(struct influence_making *making, int group, const double (*places_m)[3], size_t count, struct gaussian_params *gp)
+static bool find_params(struct influence_making *making, const struct group_sensors *sensors, struct gaussian_params *gp)
 {
     const struct influence_input *input = making->input;
-    const struct plant_group *of = &input->plant->groups[group];
+    const size_t count = sensors->count;
+    const struct plant_group *of = &input->plant->groups[sensors->group];
     const char *asset = asset_of(input)->id;
     const double size = surface_report(input->surface)->size_m;
     struct readings_table table;
@@ -119,10 +132,10 @@ static bool find_params(struct influence_making *making, int group, const double
         take_defaults(making, of, count, gp);
         return true;
     }
-    const char **names = names_of(input, group);
+    const char **names = names_of(input, sensors);
     double least_m = FIT_MIN * size, edge_m = (isnan(gp->range_m) ? least_m : min_of(gp->range_m, LONGEST * size)) / MIN_EDGES;
     bool good = readings_table_read(&table, of->gp.fit, names, count, why);
-    if (good && !influence_mesh_init(&mesh, input->surface, places_m, count, of->disc_m, edge_m)) {
+    if (good && !influence_mesh_init(&mesh, input->surface, (const double(*)[3])sensors->places_m, count, of->disc_m, edge_m)) {
         snprintf(why, sizeof(why), "out of memory");
         good = false;
     }
@@ -181,40 +194,43 @@ static bool bound_errors(const struct influence_making *making, const struct pla
     return true;
 }
 
-/* Computes one interpolation of a group and adds it to the influence file's entries. task->bend: measures the interpolation
- * errors; NULL: there are too many places (corners of overlaps) to measure them. */
-static bool add_entry(struct influence_making *making, int group, enum interpolation interpolation, const struct influence_task *task,
-                      const struct gaussian_params *gp)
+/* Adds an entry without weights to the influence file. Returns its index. */
+static uint32_t new_entry(struct influence_making *making, const struct group_sensors *sensors, uint32_t kind)
 {
-    const struct influence_input *input = making->input;
-    double decay_m = interpolation == INTERPOLATION_FIN ? plant_decay_m(asset_of(input)) : (double)INFINITY;
-    uint32_t at = making->header.entry_count;
+    uint32_t at = making->header.entry_count++;
     mem_grow(&making->entries, &making->capacity, at + 1, sizeof(*making->entries));
     mem_grow(&making->found, &making->found_capacity, at + 1, sizeof(*making->found));
-    making->entries[at] = (struct influence_entry){ .group = (uint32_t)group,
-                                                    .interpolation = interpolation,
-                                                    .sensor_count = (uint32_t)task->mesh->source_count,
-                                                    .disc_m = input->plant->groups[group].disc_m,
-                                                    .decay_m = isfinite(decay_m) ? decay_m : 0 };
-    making->header.entry_count++;
+    making->entries[at] = (struct influence_entry){ .group = (uint32_t)sensors->group,
+                                                    .interpolation = kind,
+                                                    .sensor_count = (uint32_t)sensors->count,
+                                                    .columns_hash = influence_columns_hash(sensors->columns, sensors->count) };
+    return at;
+}
+
+/* Computes one interpolation of a group and adds it to the influence file's entries. task->bend: measures the interpolation
+ * errors; NULL: there are too many places (corners of overlaps) to measure them. */
+static bool add_entry(struct influence_making *making, const struct group_sensors *sensors, enum interpolation interpolation,
+                      const struct influence_task *task, const struct gaussian_params *gp)
+{
+    const struct influence_input *input = making->input;
+    const struct plant_group *group = &input->plant->groups[sensors->group];
+    double decay_m = interpolation == INTERPOLATION_FIN ? plant_decay_m(asset_of(input)) : (double)INFINITY;
+    uint32_t at = new_entry(making, sensors, interpolation);
+    making->entries[at].disc_m = group->disc_m;
+    making->entries[at].decay_m = isfinite(decay_m) ? decay_m : 0;
     if (interpolation == INTERPOLATION_GP) {
         making->entries[at].range_m = gp->range_m;
         making->entries[at].noise = gp->noise;
         making->entries[at].deviation = gp->deviation;
     }
     return solve(making, &making->found[at], interpolation, decay_m, task, gp) &&
-           bound_errors(making, &input->plant->groups[group], interpolation, task->bend, &making->found[at]);
+           bound_errors(making, group, interpolation, task->bend, &making->found[at]);
 }
 
-static bool add_transport(struct influence_making *making, int group, const struct influence_mesh *mesh,
+static bool add_transport(struct influence_making *making, const struct group_sensors *sensors, const struct influence_mesh *mesh,
                           const struct influence_anchor *anchors)
 {
-    uint32_t at = making->header.entry_count++;
-    mem_grow(&making->entries, &making->capacity, at + 1, sizeof(*making->entries));
-    mem_grow(&making->found, &making->found_capacity, at + 1, sizeof(*making->found));
-    making->entries[at] = (struct influence_entry){
-        .group = (uint32_t)group, .interpolation = INFLUENCE_TRANSPORT, .sensor_count = (uint32_t)mesh->source_count
-    };
+    uint32_t at = new_entry(making, sensors, INFLUENCE_TRANSPORT);
     return transport_angles(&making->found[at], making->log, making->workers, mesh, anchors, making->input->normals,
                             making->input->vertex_count);
 }
@@ -263,23 +279,20 @@ static void find_by_heat(void *arg, size_t begin, size_t end)
 
 /* Computes distances by heat on a point cloud for a group. For the report, compares those of the first CLOUD_CHECKED sensors
    with the distances along the mesh that plantcast-prep computes otherwise. */
-static bool add_heat(struct influence_making *making, int group, const double (*places_m)[3], size_t count)
+static bool add_heat(struct influence_making *making, const struct group_sensors *sensors)
 {
     const struct influence_input *input = making->input;
     struct cloud_sum sum = { 0 };
-    uint32_t at = making->header.entry_count;
+    const double(*places_m)[3] = (const double(*)[3])sensors->places_m;
+    const size_t count = sensors->count;
     if (!making->cloud && !(making->cloud = cloud_heat_create(making->log, input->surface)))
         return false;
-    mem_grow(&making->entries, &making->capacity, at + 1, sizeof(*making->entries));
-    mem_grow(&making->found, &making->found_capacity, at + 1, sizeof(*making->found));
-    making->entries[at] =
-        (struct influence_entry){ .group = (uint32_t)group, .interpolation = INFLUENCE_HEAT, .sensor_count = (uint32_t)count };
+    const uint32_t at = new_entry(making, sensors, INFLUENCE_HEAT);
     struct influence *found = &making->found[at];
     *found = (struct influence){ .count = count,
                                  .vertex_count = input->vertex_count,
                                  .shares = mem_try_array(count * input->vertex_count, sizeof(float)),
                                  .precision = mem_try_array(count * count, sizeof(double)) };
-    making->header.entry_count++;
     float *ours_m = mem_try_array(input->vertex_count, sizeof(*ours_m));
     struct heat_work work = { making, places_m, found->shares, false };
     bool good = found->shares && found->precision && ours_m;
@@ -307,19 +320,20 @@ static bool add_group(struct influence_making *making, int group)
     const struct influence_input *input = making->input;
     const struct plant_group *of = &input->plant->groups[group];
     struct influence_mesh mesh = { 0 };
-    double(*places_m)[3];
-    size_t count = places_of(input, group, &places_m);
+    struct group_sensors sensors = sensors_of(input, group);
+    const double(*places_m)[3] = (const double(*)[3])sensors.places_m;
+    const size_t count = sensors.count;
     bool good = true;
     if (count > 0 && of->heat)
-        good = add_heat(making, group, (const double(*)[3])places_m, count);
+        good = add_heat(making, &sensors);
     if (good && count > 0 && (of->prepared >> INTERPOLATION_HARMONIC || of->directed)) {
         struct influence_anchor *anchors = NULL;
         struct influence_bend bend = { 0 };
         bool bounded = false;
         struct gaussian_params gp = { .range_m = INFINITY };
         bool has_gp = plant_prepares(of, INTERPOLATION_GP);
-        good = (!has_gp || find_params(making, group, (const double(*)[3])places_m, count, &gp)) &&
-               influence_mesh_init(&mesh, input->surface, (const double(*)[3])places_m, count, of->disc_m, gp.range_m / EDGES) &&
+        good = (!has_gp || find_params(making, &sensors, &gp)) &&
+               influence_mesh_init(&mesh, input->surface, places_m, count, of->disc_m, gp.range_m / EDGES) &&
                range_good(making, group, &mesh, &gp);
         anchors = good ? mem_try_array(input->vertex_count, sizeof(*anchors)) : NULL;
         good = anchors != NULL;
@@ -333,14 +347,14 @@ static bool add_group(struct influence_making *making, int group)
         const struct influence_task task = { making->log, making->workers, &mesh, anchors, input->vertex_count, bounded ? &bend : NULL };
         for (int i = INTERPOLATION_HARMONIC; good && i < INTERPOLATIONS; i++)
             if (plant_prepares(of, (enum interpolation)i))
-                good = add_entry(making, group, (enum interpolation)i, &task, &gp);
+                good = add_entry(making, &sensors, (enum interpolation)i, &task, &gp);
         if (good && of->directed)
-            good = add_transport(making, group, &mesh, anchors);
+            good = add_transport(making, &sensors, &mesh, anchors);
         mem_free(anchors);
         influence_bend_finish(&bend);
         influence_mesh_finish(&mesh);
     }
-    mem_free(places_m);
+    group_sensors_finish(&sensors);
     return good;
 }
 

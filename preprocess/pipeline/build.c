@@ -40,6 +40,17 @@ static bool is_constant(const struct plant *plant, const struct plant_sensor *se
     return true;
 }
 
+/* Hashes what else a fit to recorded readings depends on: the group's range, from which an asset with few sensors takes defaults, and the
+   names of its tags, by which the file's columns are found. */
+static void hash_fit(XXH3_state_t *state, const struct plant *plant, const struct plant_sensor *sensors, size_t count, int group)
+{
+    const double range = plant->groups[group].max - plant->groups[group].min;
+    XXH3_64bits_update(state, &range, sizeof(range));
+    for (size_t i = 0; i < count; i++)
+        if (plant->tags[sensors[i].tag].group == group)
+            hash_text(state, plant->tags[sensors[i].tag].name);
+}
+
 /* Hashes the settings for the interpolation `gp` (Gaussian process) and the recorded readings that its parameters are fitted
  * to. Covers the groups that have a sensor in `sensors`. */
 static void hash_gp(XXH3_state_t *state, const struct plant *plant, const struct plant_sensor *sensors, size_t count)
@@ -58,6 +69,8 @@ static void hash_gp(XXH3_state_t *state, const struct plant *plant, const struct
             plant_model_hash(gp->fit, &readings);
         XXH3_64bits_update(state, numbers, sizeof(numbers));
         XXH3_64bits_update(state, &readings, sizeof(readings));
+        if (gp->fit)
+            hash_fit(state, plant, sensors, count, (int)g);
     }
 }
 

@@ -8,7 +8,7 @@
 #include "preprocess/pipeline/build_io.h"
 
 /* revision of the contents of asset files; increment it whenever the same input gives a different file than before */
-#define BUILD_REVISION 62u
+#define BUILD_REVISION 63u
 
 /* Builds the asset into output->file, a draft that the caller names (folder_put()) and closes. Uses all workers. Returns false
  * with the reason in why and without a file. Call from any thread. */

@@ -56,11 +56,21 @@ static bool sensors_fit(struct log *log, const struct plant *plant, const struct
     return true;
 }
 
-static size_t count_placed(const struct plant *plant, const struct plant_sensor *sensors, size_t count, int group)
+/* the sensors of a group whose place on the asset is known */
+struct placed_sensors {
+    size_t count;
+    uint32_t columns_hash; /* influence_columns_hash() */
+};
+
+static struct placed_sensors placed_sensors(const struct plant *plant, const struct plant_sensor *sensors, size_t count, int group)
 {
-    size_t placed = 0;
+    struct placed_sensors placed = { 0 };
+    uint32_t *columns = mem_array(count, sizeof(*columns));
     for (size_t i = 0; i < count; i++)
-        placed += plant->tags[sensors[i].tag].group == group && !plant->tags[sensors[i].tag].place.assumed;
+        if (plant->tags[sensors[i].tag].group == group && !plant->tags[sensors[i].tag].place.assumed)
+            columns[placed.count++] = (uint32_t)i;
+    placed.columns_hash = influence_columns_hash(columns, placed.count);
+    mem_free(columns);
     return placed;
 }
 
@@ -72,12 +82,13 @@ static bool is_as_stated(const struct plant_gp *gp, const struct influence_entry
            (isnan(gp->deviation) || gp->deviation == entry->deviation);
 }
 
-/* Returns whether the prepared entry of a group matches the plant file's present sensors. */
-static bool has_entry(struct log *log, const struct scene_asset *asset, size_t group, uint32_t kind, size_t placed)
+/* Returns the prepared entry of a group; NULL: there is none for the plant file's present sensors. */
+static const struct influence_entry *find_entry(struct log *log, const struct scene_asset *asset, size_t group, uint32_t kind,
+                                                const struct placed_sensors *placed)
 {
     const struct influence_entry *entry =
         asset_open_influence(log, asset->file) ? influence_find(&asset->file->influence, (uint32_t)group, kind) : NULL;
-    return entry && entry->sensor_count == placed;
+    return entry && entry->sensor_count == placed->count && entry->columns_hash == placed->columns_hash ? entry : NULL;
 }
 
 static bool influence_fits(struct log *log, const struct plant *plant, const struct scene_asset *asset, const struct plant_sensor *sensors,
@@ -85,15 +96,16 @@ static bool influence_fits(struct log *log, const struct plant *plant, const str
 {
     for (size_t g = 0; g < plant->group_count; g++) {
         const struct plant_group *group = &plant->groups[g];
-        size_t placed = plant_prepares_any(group) ? count_placed(plant, sensors, count, (int)g) : 0;
-        /* without sensors, plantcast-prep writes no influence file, so no heat distances are required */
-        bool heat = placed > 0 && group->heat && !has_entry(log, asset, g, INFLUENCE_HEAT, placed);
-        if (heat || (placed > 0 && group->directed && !has_entry(log, asset, g, INFLUENCE_TRANSPORT, placed))) {
+        struct placed_sensors placed = placed_sensors(plant, sensors, count, (int)g);
+        if (placed.count == 0 || !plant_prepares_any(group))
+            continue;
+        bool heat = group->heat && !find_entry(log, asset, g, INFLUENCE_HEAT, &placed);
+        if (heat || (group->directed && !find_entry(log, asset, g, INFLUENCE_TRANSPORT, &placed))) {
             log_err(log, "asset %s: the prepared %s for sensor group %s are missing, damaged or outdated; run plantcast-prep again",
                     asset->plant->id, heat ? "heat distances" : "directions", group->id);
             return false;
         }
-        for (int i = INTERPOLATION_HARMONIC; placed > 0 && i < INTERPOLATIONS; i++) {
+        for (int i = INTERPOLATION_HARMONIC; i < INTERPOLATIONS; i++) {
             if (!plant_prepares(group, (enum interpolation)i))
                 continue;
             if (!asset_open_influence(log, asset->file)) {
@@ -101,15 +113,16 @@ static bool influence_fits(struct log *log, const struct plant *plant, const str
                         asset->plant->id);
                 return false;
             }
-            const struct influence_entry *entry = influence_find(&asset->file->influence, (uint32_t)g, (uint32_t)i);
+            const struct influence_entry *entry = find_entry(log, asset, g, (uint32_t)i, &placed);
             const struct plant_gp *gp = i == INTERPOLATION_GP ? &group->gp : NULL;
             double decay_m = i == INTERPOLATION_FIN ? plant_decay_m(asset->plant) : 0;
-            if (entry && entry->sensor_count == placed && entry->disc_m == group->disc_m && entry->decay_m == decay_m &&
+            if (entry && entry->disc_m == group->disc_m && entry->decay_m == decay_m &&
                 (!gp || (entry->deviations && is_as_stated(gp, entry))))
                 continue;
             log_err(log,
-                    "asset %s: the sensor weights of group %s are outdated: the tag list, `disc_m`, `gp`, `thickness_m`, `conductivity` or "
-                    "`heat_transfer` was changed; run plantcast-prep again",
+                    "asset %s: the sensor weights of group %s are outdated: the tag list, the order of the groups, `disc_m`, `gp`, `min` or "
+                    "`max` of a group with `gp`, `thickness_m`, `conductivity` or `heat_transfer` was changed; run plantcast-prep "
+                    "again",
                     asset->plant->id, group->id);
             return false;
         }

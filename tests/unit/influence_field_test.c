@@ -38,22 +38,27 @@ static double place_of(size_t sensor)
     return 0.5 + 0.8 * (double)sensor;
 }
 
-static void write_plant(struct prep_case *c, const char *wall, const char *group, size_t sensors)
+static void write_plant_to(struct prep_case *c, const char *max, const char *wall, const char *group, size_t sensors)
 {
     char *yaml = test_printf("plant: { name: Strip }\n"
-                            "assets:\n"
-                            "  - { id: S, model: model.glb, up: z%s }\n"
-                            "groups:\n"
-                            "  - { id: temperature, unit: K, min: 0, max: 100%s }\n"
-                            "sources:\n"
-                            "  - { id: plc, type: modbus, host: 127.0.0.1, byte_order: CDAB, address_base: 1 }\n"
-                            "tags: tags.csv\n",
-                            wall, group);
+                             "assets:\n"
+                             "  - { id: S, model: model.glb, up: z%s }\n"
+                             "groups:\n"
+                             "  - { id: temperature, unit: K, min: 0, max: %s%s }\n"
+                             "sources:\n"
+                             "  - { id: plc, type: modbus, host: 127.0.0.1, byte_order: CDAB, address_base: 1 }\n"
+                             "tags: tags.csv\n",
+                             wall, max, group);
     struct text *rows = test_text();
     for (size_t i = 0; i < sensors; i++)
         text_add(rows, "T%zu,%zu,Float,plc,temperature,S,,%g,0.05,0\n", i, 400001 + 2 * i, place_of(i));
     prep_case_plant(c, yaml);
     prep_case_tags(c, rows->at);
+}
+
+static void write_plant(struct prep_case *c, const char *wall, const char *group, size_t sensors)
+{
+    write_plant_to(c, "100", wall, group, sensors);
 }
 
 struct plant_in_use {
@@ -738,6 +743,14 @@ CASE(test_gp_fitted_to_readings)
     print_message("fitted: range %.2f m, noise %.2f, deviation %.2f\n", entry->range_m, entry->noise, entry->deviation);
     assert_true(entry->range_m > 0.5 && entry->deviation > 0.5 && entry->deviation < 100 && entry->noise < 5);
     look(u, place_of(0));
+    /* the file's columns belong to other sensors if two tags exchange their names */
+    uint64_t key, exchanged;
+    prep_case_file(c, ".influence", &key);
+    prep_case_tags(c, "T1,400001,Float,plc,temperature,S,,0.5,0.05,0\nT0,400003,Float,plc,temperature,S,,1.3,0.05,0\n"
+                      "T2,400005,Float,plc,temperature,S,,2.1,0.05,0\nT3,400007,Float,plc,temperature,S,,2.9,0.05,0\n");
+    prep_case_expect(c, "$PLANT", 0);
+    prep_case_file(c, ".influence", &exchanged);
+    assert_true(exchanged != key);
     text_add(rows, "40,1,2\n");
     temp_write_text(c->folder, "readings.csv", "T0,T1\n");
     prep_case_expect(c, "$PLANT", 1);
@@ -760,6 +773,10 @@ CASE(test_gp_of_few_sensors_takes_defaults)
         assert_true(fabs(entry->noise - PLANT_GP_NOISE * (group->max - group->min)) < 1e-9);
         assert_true(entry->range_m > 0);
     }
+    write_plant_to(c, "1000", "", ", prepare: [gp], gp: { fit: readings.csv }", 2); /* the defaults depend on the range */
+    prep_case_expect(c, "$PLANT", 0);
+    struct plant_in_use *u = use_prepared(c);
+    assert_true(influence_find(&u->scene->assets[0].file->influence, 0, INTERPOLATION_GP)->deviation > PLANT_GP_DEVIATION * 900);
 }
 
 CASE(test_what_is_missing_is_said)
@@ -788,6 +805,45 @@ CASE(test_not_prepared_is_refused)
     u = use_prepared(c);
     write_plant(c, "", ", prepare: [harmonic], disc_m: 0.2", 2);
     assert_null(use(c));
+}
+
+/* Writes a plant with the groups A and B, each with two sensors. `groups`: the group of each sensor; order: the groups' ids as in the plant
+   file. */
+static void write_two_groups(struct prep_case *c, const char *keys, const char groups[4], const char order[2])
+{
+    struct text *rows = test_text();
+    char *yaml = test_printf("plant: { name: Strip }\n"
+                             "assets:\n"
+                             "  - { id: S, model: model.glb, up: z }\n"
+                             "groups:\n"
+                             "  - { id: %c, unit: K, min: 0, max: 100%s }\n"
+                             "  - { id: %c, unit: K, min: 0, max: 100%s }\n"
+                             "sources:\n"
+                             "  - { id: plc, type: modbus, host: 127.0.0.1, byte_order: CDAB, address_base: 1 }\n"
+                             "tags: tags.csv\n",
+                             order[0], keys, order[1], keys);
+    for (size_t i = 0; i < 4; i++)
+        text_add(rows, "T%zu,%zu,Float,plc,%c,S,,%g,0.05,0\n", i, 400001 + 2 * i, groups[i], place_of(i));
+    prep_case_plant(c, yaml);
+    prep_case_tags(c, rows->at);
+}
+
+/* Weights belong to the sensors for which they were prepared: the daemon refuses them for as many other sensors of the asset. */
+CASE(test_weights_of_other_sensors_are_refused)
+{
+    static const char *const keys[] = { ", prepare: [harmonic]", ", geodesic: heat" };
+    write_model(c);
+    for (size_t i = 0; i < sizeof(keys) / sizeof(*keys); i++) {
+        write_two_groups(c, keys[i], "AABB", "AB");
+        prep_case_expect(c, "$PLANT", 0);
+        use_prepared(c);
+        write_two_groups(c, keys[i], "BAAB", "AB");
+        assert_null(use(c));
+        write_two_groups(c, keys[i], "AABB", "BA");
+        assert_null(use(c));
+        prep_case_expect(c, "$PLANT", 0);
+        use_prepared(c);
+    }
 }
 
 /* For an asset without sensors nothing is prepared, and no file is reported as missing. */
