@@ -14,6 +14,8 @@
 #include "plant/influence.h"
 
 #define FLAG 255
+/* Share of a lost sensor's value that the readings of other sensors determine, above which it counts. Less is only rounding. */
+#define DETERMINED 1e-9
 /* error as a fraction of the colour range; vertices of triangles that may be drawn with a larger error are marked uncertain */
 #define DRAWN_ERROR (1 / 255.0)
 /* factor by which a newly chosen limit on errors is stricter than necessary, so that it stays valid when readings change
@@ -131,9 +133,14 @@ void update_rule(const struct field_state *state, const struct state_input *inpu
    more reading. */
 static double error_scale(const struct field_state *state)
 {
+    const struct weights *weights = state->weights;
     double low = INFINITY, high = -INFINITY;
-    for (size_t m = 0; m < state->weights->member_count; m++) {
-        double value = state->now[state->weights->members[m]].value;
+    for (size_t m = 0; m < weights->member_count; m++) {
+        uint32_t i = weights->members[m];
+        /* a lost sensor whose value no other sensor determines, because it is the only one on its body, has a value of 0 */
+        if (weights->ones && !weights->takes_part[i] && fabs(weights->ones[i]) < DETERMINED)
+            continue;
+        double value = state->now[i].value;
         low = fmin(low, value);
         high = fmax(high, value);
     }
