@@ -83,6 +83,9 @@ struct drawn_error_job {
     /* [n]: number of the level's triangles that need about n samples (samples_of()) */
     atomic_size_t needing[MAX_PIECES + 1];
     bool has_border;      /* somewhere there is no data: sensors reach a limited distance, or a sensor is lost */
+    /* preparation left no error of values, but the border of the reach may be drawn elsewhere in large triangles: values there do not
+       change if only one sensor has weight, so preparation does not cut them */
+    bool only_border;
     int most_pieces;      /* triangles that need more samples than this get a bound instead; MAX_PIECES: all are sampled */
     float *errors;        /* interpolation error of each triangle */
     float *ridges;        /* error of values in each triangle where paths from two sides meet; NULL: not measured */
@@ -397,11 +400,29 @@ static struct triangle_extent extent_of(const struct drawn_error_job *job, const
     return extent;
 }
 
+/* Returns whether a frame might show data inside the triangle where the field has none. The distance beyond the border of the data
+   changes by at most two metres per metre, but not steadily at the border of the surroundings of a sensor without limits. */
+static bool may_hide_rim(const struct drawn_error_job *job, const uint32_t corners[3], float longest_m)
+{
+    const struct weights *weights = job->weights;
+    float least = 255, most = 0;
+    for (int k = 0; k < 3; k++) {
+        if (weights->place[corners[k]] == PLACE_NO_LIMITS)
+            return true;
+        float lacking = weights_lacking_at(weights, corners[k], false);
+        least = fminf(least, lacking);
+        most = fmaxf(most, lacking);
+    }
+    return job->has_border && least <= 127 && most + 2 * longest_m * weights->steps_per_m > 127 + BORDER_SLACK;
+}
+
 /* Returns about how many samples a triangle needs; 0: none, because it is small compared with the distance to the nearest sensor
    or, in a coarse level, smaller than the pixels with which the level is drawn. */
-static int samples_of(const struct drawn_error_job *job, const struct triangle_extent *extent)
+static int samples_of(const struct drawn_error_job *job, const uint32_t corners[3], const struct triangle_extent *extent)
 {
     const float longest_m = extent->longest_m;
+    if (job->only_border && !may_hide_rim(job, corners, longest_m))
+        return 0;
     if (longest_m < 2 * job->error_m || (job->near ? is_even(job->near, longest_m, extent->near_m, extent->far_m) : !extent->data))
         return 0;
     if (!job->near && longest_m <= job->accepted * (extent->near_m - longest_m))
@@ -417,7 +438,7 @@ static void count_samples(void *arg, size_t begin, size_t end)
     size_t needing[MAX_PIECES + 1] = { 0 };
     for (size_t t = job->first + begin; t < job->first + end; t++) {
         struct triangle_extent extent = extent_of(job, indices + 3 * t);
-        needing[samples_of(job, &extent)]++;
+        needing[samples_of(job, indices + 3 * t, &extent)]++;
     }
     for (int n = 0; n <= MAX_PIECES; n++)
         atomic_fetch_add_explicit(&job->needing[n], needing[n], memory_order_relaxed);
@@ -434,22 +455,6 @@ static void choose_sampled(struct drawn_error_job *job)
         if (samples > MOST_SAMPLES / (sensors > 0 ? sensors : 1))
             return;
     }
-}
-
-/* Returns whether a frame might show data inside the triangle where the field has none. The distance beyond the border of the data
-   changes by at most two metres per metre, but not steadily at the border of the surroundings of a sensor without limits. */
-static bool may_hide_rim(const struct drawn_error_job *job, const uint32_t corners[3], float longest_m)
-{
-    const struct weights *weights = job->weights;
-    float least = 255, most = 0;
-    for (int k = 0; k < 3; k++) {
-        if (weights->place[corners[k]] == PLACE_NO_LIMITS)
-            return true;
-        float lacking = weights_lacking_at(weights, corners[k], false);
-        least = fminf(least, lacking);
-        most = fmaxf(most, lacking);
-    }
-    return job->has_border && least <= 127 && most + 2 * longest_m * weights->steps_per_m > 127 + BORDER_SLACK;
 }
 
 /* Returns a bound on the interpolation error inside a triangle (SHEPARD_ACCEPTED); 1: none is known. */
@@ -473,7 +478,7 @@ static void measure_some(void *arg, size_t begin, size_t end)
     for (size_t t = job->first + begin; t < job->first + end; t++) {
         uint32_t *corners = indices + 3 * t;
         struct triangle_extent extent = extent_of(job, corners);
-        int samples = samples_of(job, &extent);
+        int samples = samples_of(job, corners, &extent);
         bool sampled = samples > 0 && samples <= job->most_pieces;
         if (sampled && !sampler) {
             sampler = mem_new(sizeof(*sampler));
@@ -635,7 +640,7 @@ static void measure_triangles(struct drawn_error_job *job, const struct asset_le
 }
 
 /* Measures all errors of one level of detail. resolved true: preparation left no interpolation error, so only the effect of
-   errors in distances is measured. Returns false when out of memory. */
+   errors in distances, and the border of the reach, are measured. Returns false when out of memory. */
 static bool measure_level(struct drawn_error_job *job, const struct asset_level *level, bool resolved, struct workers *workers)
 {
     struct weights *weights = job->weights;
@@ -666,7 +671,8 @@ static bool measure_level(struct drawn_error_job *job, const struct asset_level 
     workers_for(workers, blocks, 4, prepare_some, weights);
     if (job->vertex_errors)
         workers_for(workers, blocks, 4, amplify_some, job);
-    if (!resolved)
+    job->only_border = resolved;
+    if (!resolved || weights->reach_m < INFINITY)
         measure_triangles(job, level, workers);
     spread(weights, job, level);
     mem_free(job->ridges);
@@ -730,7 +736,9 @@ void drawn_error_measure(struct weights *weights, const struct field_params *par
     if (weights->prepared || layout->assumed || weights->member_count == 0 || is_constant(weights))
         return;
     const bool resolved = layout->file->resolved_levels & bit && in_range && is_as_prepared(weights, params);
-    if ((resolved && !amplifies_distances(weights)) || (resolved ? weights->measured_levels : weights->sampled_levels) & bit)
+    if (resolved && !amplifies_distances(weights) && !(weights->reach_m < INFINITY))
+        return;
+    if ((resolved ? weights->measured_levels : weights->sampled_levels) & bit)
         return;
     weights->measured_levels |= bit;
     weights->sampled_levels |= resolved ? 0 : bit;

@@ -874,6 +874,54 @@ TEST(test_a_lost_sensor_keeps_its_place)
     assert_int_equal(painted, 0);
 }
 
+/* One sensor with a limited reach stands on a plate of two triangles, which preparation did not cut, because all values are equal.
+   Pictures must show that places beyond the reach have no data, or mark them as uncertain. */
+TEST(test_the_end_of_a_lone_reach_is_marked)
+{
+    const double reach_m = 1.2;
+    int beyond = 0, painted = 0, within = 0;
+    random_state = sweep_seed();
+    for (int round = 0; round < sweep(12, 3); round++) {
+        struct toy *toy = toy_create();
+        struct test_shape shape = { 0 };
+        struct stand stand;
+        struct view view;
+        double x_m = between(0.02, 0.1), y_m = between(0.02, 0.1), places[1][3] = { { x_m, y_m, 0.02 } };
+        float(*measured)[4] = mem_array(PIXELS, sizeof(*measured));
+        shape_plate(&shape, TOY_STEEL, (double[3]){ 0 }, (double[3]){ SIDE_M, 0, 0 }, (double[3]){ 0, SIDE_M, 0 }, 1);
+        shape_plate(&shape, TOY_STEEL, (double[3]){ -1, 0, 0 }, (double[3]){ 1, 0, 0 }, (double[3]){ 0, SIDE_M, 0 }, CELLS);
+        shape_box(&shape, TOY_BLUE, (double[3]){ x_m - 0.01, y_m - 0.01, 0.01 }, (double[3]){ x_m + 0.01, y_m + 0.01, 0.02 });
+        toy_add(toy, "PLATE", &shape, (double[3]){ 0, 0, 0 }, (const double(*)[3])places, 1);
+        toy->plant.groups[0].reach_m = reach_m;
+        toy->scene.assets[0].file->resolved_levels = UINT64_MAX;
+        stand_init(&stand, &rig, toy);
+        toy_set(stand.snapshot, 0, 50, QUALITY_GOOD);
+        view_default(&toy->scene, WIDTH_PX, HEIGHT_PX, &view);
+        view.field.distance = DISTANCE_GEODESIC;
+        view.field.reach_m = reach_m;
+        look(&toy->scene, &view);
+        assert_true(renderer_measure(stand.renderer, &view, stand.snapshot, true, measured));
+        for (int i = 0; i < PICKS; i++) {
+            int x = (int)between(0, WIDTH_PX), y = (int)between(0, HEIGHT_PX);
+            const float *pixel = measured[y * WIDTH_PX + x];
+            struct pick pick;
+            pick_at(&toy->scene, stand.field, &view, stand.snapshot, x + 0.5, y + 0.5, &pick);
+            if (pick.asset < 0 || pixel[1] < 0)
+                continue;
+            bool shown = pixel[1] <= 0.5f && pixel[2] <= 0.5f;
+            double away_m = hypot(pick.position_m[0] - x_m, pick.position_m[1] - y_m);
+            beyond += away_m > reach_m + 0.05;
+            painted += away_m > reach_m + 0.05 && shown;
+            within += away_m < reach_m - 0.05 && shown;
+        }
+        mem_free(measured);
+        stand_finish(&stand);
+    }
+    print_message("# %d places beyond the reach, %d of them painted; %d places within it are unmarked\n", beyond, painted, within);
+    assert_true(beyond > 300 && within > 20);
+    assert_int_equal(painted, 0);
+}
+
 /* --- what was found --------------------------------------------------------------------------------------------------------- */
 
 struct long_part {
