@@ -47,6 +47,8 @@
 #define MANY_SENSORS 128
 /* smallest number of triangles of a level whose size is first estimated from a sample; samples of smaller levels are unreliable */
 #define SAMPLE_WORTH 9000
+/* the same if the finest level reached its triangle limit: most coarser levels then need too many triangles, too */
+#define SAMPLE_WORTH_FULL 1000
 #define SAMPLE_ROUNDS 4 /* maximum number of rounds of splits on a sample; more would not change the estimate */
 /* minimum length of the two parts of a split edge in the finest level of detail, in multiples of the model's tolerance; short
  * because sensors may be close together */
@@ -481,7 +483,7 @@ static void cut_to(struct subdiv *subdiv, double limit)
 static bool is_hopeless(struct subdiv *subdiv, const struct level *level, double large)
 {
     struct level sample;
-    if (level->index_count / 3 < SAMPLE_WORTH)
+    if (level->index_count / 3 < (subdiv->finest_full ? SAMPLE_WORTH_FULL : SAMPLE_WORTH))
         return false;
     subdiv->sample_blocks = subdiv_take_sample(&sample, level);
     subdiv->full = false;
