@@ -120,8 +120,8 @@ static bool influence_fits(struct log *log, const struct plant *plant, const str
                 (!gp || (entry->deviations && is_as_stated(gp, entry))))
                 continue;
             log_err(log,
-                    "asset %s: the sensor weights of group %s are outdated: the tag list, the order of the groups, `disc_m`, `gp`, `min` or "
-                    "`max` of a group with `gp`, `thickness_m`, `conductivity` or `heat_transfer` was changed; run plantcast-prep "
+                    "asset %s: the sensor weights of group %s are outdated: the tag list, the order of the groups, `disc_m`, `gp`, `min` "
+                    "or `max` of a group with `gp`, `thickness_m`, `conductivity` or `heat_transfer` was changed; run plantcast-prep "
                     "again",
                     asset->plant->id, group->id);
             return false;
