@@ -54,7 +54,7 @@ static const char *const sql[SQL_COUNT] = {
     [SQL_COMMIT] = "COMMIT",
     [SQL_ROLLBACK] = "ROLLBACK",
     /* also finds earlier series of the tag that were set aside, because their unit cannot be converted to the unit that the tag
-       has now. They are named after the tag, followed by char(31) and a number or a unit */
+       has now. They are named after the tag, followed by char(31) and their id */
     [SQL_FIND_TAG] = "SELECT id, step, unit FROM tag WHERE name = ?1 OR (name > ?1 || char(31) AND name < ?1 || char(32)) ORDER BY name",
     [SQL_RENAME_TAG] = "UPDATE tag SET name = ?2 WHERE id = ?1",
     [SQL_TAG_UNIT] = "SELECT unit FROM tag WHERE id = ?",

@@ -77,6 +77,15 @@ static void report_set_aside(struct month_file *file, const struct history_tag *
     sqlite3_reset(find);
 }
 
+/* Renames a series of the tag that is not in the tag's present unit: readers find it by its unit. */
+static int rename_aside(struct month_file *file, const struct history_tag *of, int64_t id)
+{
+    char *name = mem_printf("%s\x1f%lld", of->name, (long long)id);
+    int error = rename_series(file, id, name);
+    mem_free(name);
+    return error;
+}
+
 /* Ends the tag's series in this file and renames it, because its unit cannot be converted to the unit that the tag has now. The
    series keeps its points and its unit. Readers skip it unless the tag later gets a unit to which that of the series can be
    converted. */
@@ -84,7 +93,6 @@ static int set_series_aside(struct month_file *file, const struct history_tag *o
 {
     static const struct month_chunk own = { 0 };
     struct history_points points = { 0 };
-    char *name = mem_printf("%s\x1f%lld", of->name, (long long)id);
     int error = month_stored_points(file, id, 0, INT64_MAX, &points);
     const struct history_point *last = points.count ? &points.at[points.count - 1] : NULL;
     if (!error && last && history_point_usable(last)) {
@@ -94,11 +102,10 @@ static int set_series_aside(struct month_file *file, const struct history_tag *o
             error = put(file, SQL_ADD_OUTBOX, id, &end);
     }
     if (!error)
-        error = rename_series(file, id, name);
+        error = rename_aside(file, of, id);
     if (!error)
         report_set_aside(file, of, id, &points);
     mem_free(points.at);
-    mem_free(name);
     return error;
 }
 
@@ -507,10 +514,12 @@ static int import_series(struct month_file *file, int tag, int64_t *id, struct u
     }
     struct unit_change none;
     bool has_other = month_find_tag(file, of->name, NULL, &step, &none) != 0;
-    char *name = has_other ? mem_printf("%s\x1f%s", of->name, of->unit) : mem_strdup(of->name);
+    if (!has_other)
+        return put_series(file, of, of->name, id);
+    char *name = mem_printf("%s\x1f", of->name); /* no other series has this name */
     int error = put_series(file, of, name, id);
     mem_free(name);
-    return error;
+    return error ? error : rename_aside(file, of, *id);
 }
 
 int month_file_import(struct month_file *file, int tag, const struct history_point *points, size_t count)

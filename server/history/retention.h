@@ -29,8 +29,8 @@ int64_t retention_apply(struct log *log, const char *folder, const struct retent
 /* Returns true if history and rows of the alarm journal may be deleted for their age. Returns false for a week of monotonic time after
    the clock was set forward by more than a week since the last call. After the first call, also returns false for a week if the
    history has a pause of more than a week that lasts until utc_ns, ended within the week before, or lies between the newest two
-   months: the clock may have been set while the daemon did not run. Call it before each deletion, from any thread, with one clock
-   for each thread. */
+   months: the clock may have been set while the daemon did not run. Does not notice a pause within one month. Call it before each
+   deletion, from any thread, with one clock for each thread. */
 bool retention_by_age(struct retention_clock *clock, struct log *log, const char *folder, int64_t mono_ns, int64_t utc_ns);
 /* Returns the number of days of history that fit the size limit, judged by the newest month with at least a day of history;
    INFINITY: unknown. Logs a warning if limits->days is more. Call it at the start. */

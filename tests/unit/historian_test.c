@@ -625,6 +625,7 @@ CASE(a_loss_ends_with_the_daemon)
         sleep_ns(NS_PER_MS);
     }
     wait_until_counted(s, "plantcast_history_samples_total", 21 * TAGS);
+    wait_until_counted(s, "plantcast_history_good", 0); /* a write has failed */
     const double lost = counted(s, "plantcast_history_lost_total");
     assert_true(lost > 0);
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &unlimited), 0);

@@ -1524,6 +1524,10 @@ CASE(an_import_keeps_the_unit_that_is_recorded)
     assert_values(s, "°F", (double[]){ 212, 68, 68, 68, 70 }, 5);
     write_in_unit(s, "bar", NOVEMBER + 14 * S, 8, 1, false);
     assert_values(s, "bar", (double[]){ 5, 6, 8 }, 3);
+    /* a unit that looks like the id of a series: "1" is that of fractions */
+    import_in_unit(s, "1", NOVEMBER + 4 * S, 0.5);
+    write_in_unit(s, "1", NOVEMBER + 15 * S, 0.25, 1, false);
+    assert_values(s, "1", (double[]){ 0.5, 0.25 }, 2);
 }
 
 CASE(a_unit_stated_later_keeps_the_points)
