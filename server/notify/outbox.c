@@ -280,8 +280,10 @@ void outbox_tick(struct outbox *outbox, int64_t now_us)
            alarms, so it does not become outdated */
         bool keeps = outbox->plant->notify->recipients[i].kind == NOTIFY_ALERTMANAGER;
         /* A message from the future means that the wall clock was set back. Its age would stay negative. */
-        if (box->batch_us > now_us)
+        if (!keeps && box->batch_us > now_us) {
             box->batch_us = now_us;
+            outbox->dirty = true;
+        }
         if (!keeps && box->batch_count > 0 && box->attempts > 0 && now_us - box->batch_us > OUTBOX_KEEP_US)
             drop_alarms(outbox, box, 0);
     }

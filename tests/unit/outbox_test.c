@@ -437,6 +437,7 @@ CASE(an_undeliverable_message_is_given_up_after_the_clock_was_set_back)
     assert_true(outbox_next(f->outbox, OPS, T0 + 3 * S, &message));
     outbox_failed(f->outbox, OPS, T0 + 4 * S);
     outbox_tick(f->outbox, before);
+    restart(f);
     outbox_tick(f->outbox, before + 24 * 60 * MIN);
     assert_int_equal(outbox_counts(f->outbox, OPS).lost, 0);
     outbox_tick(f->outbox, before + 24 * 60 * MIN + S);
