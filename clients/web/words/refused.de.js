@@ -59,7 +59,7 @@ kept: es sind schon {count} Vergleichsstände gespeichert; bitte erst einen lös
 lines: ein Abstand von {step} ergibt mehr als {count} Linien
 numbers: höchstens {count} Zahlen, jede größer als die vorige
 log: eine logarithmische Skala braucht einen Bereich, der bei 1e-18 oder darüber beginnt
-range: der Bereich muss unter seinem Ende beginnen, um mindestens ein Millionstel des größeren Endes
+range: das Ende des Bereichs muss seinen Anfang um mindestens 1e-18 und ein Millionstel des größeren Betrags übertreffen
 between: erwartet wird eine Zahl von {low} bis {high}
 placeless: dieser Sensor hat für diese Messgröße keinen Ort
 narrow: das Bild ist zu schmal zum Teilen

@@ -59,7 +59,7 @@ kept: {count} comparisons are saved already: remove one first
 lines: a step of {step} makes more than {count} lines
 numbers: at most {count} numbers, each larger than the one before
 log: a logarithmic scale needs a range that begins at 1e-18 or above
-range: the range must begin below its end, by a millionth of its larger end or more
+range: the end of the range must exceed its beginning by 1e-18 or more, and by a millionth of the larger absolute value or more
 between: a number from {low} to {high} is expected
 placeless: this sensor has no location for this quantity
 narrow: the picture is too narrow to split
