@@ -40,15 +40,21 @@ static bool is_constant(const struct plant *plant, const struct plant_sensor *se
     return true;
 }
 
-/* Hashes what else a fit to recorded readings depends on: the group's range, from which an asset with few sensors takes defaults, and the
-   names of its tags, by which the file's columns are found. */
+/* Hashes what else the result of a fit to recorded readings depends on: the names of the group's tags, by which the file's columns are
+   found; with too few sensors for a fit, the group's range, from which defaults are taken. */
 static void hash_fit(XXH3_state_t *state, const struct plant *plant, const struct plant_sensor *sensors, size_t count, int group)
 {
     const double range = plant->groups[group].max - plant->groups[group].min;
-    XXH3_64bits_update(state, &range, sizeof(range));
-    for (size_t i = 0; i < count; i++)
-        if (plant->tags[sensors[i].tag].group == group)
-            hash_text(state, plant->tags[sensors[i].tag].name);
+    size_t placed = 0;
+    for (size_t i = 0; i < count; i++) {
+        const struct plant_tag *tag = &plant->tags[sensors[i].tag];
+        if (tag->group != group || tag->place.assumed)
+            continue;
+        hash_text(state, tag->name);
+        placed++;
+    }
+    if (placed < PLANT_GP_FITTED)
+        XXH3_64bits_update(state, &range, sizeof(range));
 }
 
 /* Hashes the settings for the interpolation `gp` (Gaussian process) and the recorded readings that its parameters are fitted

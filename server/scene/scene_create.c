@@ -62,7 +62,7 @@ struct placed_sensors {
     uint32_t columns_hash; /* influence_columns_hash() */
 };
 
-static struct placed_sensors placed_sensors(const struct plant *plant, const struct plant_sensor *sensors, size_t count, int group)
+static struct placed_sensors find_placed(const struct plant *plant, const struct plant_sensor *sensors, size_t count, int group)
 {
     struct placed_sensors placed = { 0 };
     uint32_t *columns = mem_array(count, sizeof(*columns));
@@ -75,11 +75,15 @@ static struct placed_sensors placed_sensors(const struct plant *plant, const str
 }
 
 /* Returns whether the `gp` parameters with which the asset file was prepared equal those that the plant file states. Parameters
-   that it does not state were determined from readings, and are not compared. */
-static bool is_as_stated(const struct plant_gp *gp, const struct influence_entry *entry)
+   that it does not state were determined from readings, and are not compared; or, with few sensors, from the group's range. */
+static bool is_as_stated(const struct plant_group *group, const struct influence_entry *entry)
 {
-    return (isnan(gp->range_m) || gp->range_m == entry->range_m) && (isnan(gp->noise) || gp->noise == entry->noise) &&
-           (isnan(gp->deviation) || gp->deviation == entry->deviation);
+    const struct plant_gp *gp = &group->gp;
+    const bool has_defaults = entry->sensor_count < PLANT_GP_FITTED;
+    const double noise = isnan(gp->noise) && has_defaults ? PLANT_GP_NOISE * (group->max - group->min) : gp->noise;
+    const double deviation = isnan(gp->deviation) && has_defaults ? PLANT_GP_DEVIATION * (group->max - group->min) : gp->deviation;
+    return (isnan(gp->range_m) || gp->range_m == entry->range_m) && (isnan(noise) || noise == entry->noise) &&
+           (isnan(deviation) || deviation == entry->deviation);
 }
 
 /* Returns the prepared entry of a group; NULL: there is none for the plant file's present sensors. */
@@ -96,8 +100,10 @@ static bool influence_fits(struct log *log, const struct plant *plant, const str
 {
     for (size_t g = 0; g < plant->group_count; g++) {
         const struct plant_group *group = &plant->groups[g];
-        struct placed_sensors placed = placed_sensors(plant, sensors, count, (int)g);
-        if (placed.count == 0 || !plant_prepares_any(group))
+        if (!plant_prepares_any(group))
+            continue;
+        struct placed_sensors placed = find_placed(plant, sensors, count, (int)g);
+        if (placed.count == 0)
             continue;
         bool heat = group->heat && !find_entry(log, asset, g, INFLUENCE_HEAT, &placed);
         if (heat || (group->directed && !find_entry(log, asset, g, INFLUENCE_TRANSPORT, &placed))) {
@@ -114,10 +120,9 @@ static bool influence_fits(struct log *log, const struct plant *plant, const str
                 return false;
             }
             const struct influence_entry *entry = find_entry(log, asset, g, (uint32_t)i, &placed);
-            const struct plant_gp *gp = i == INTERPOLATION_GP ? &group->gp : NULL;
             double decay_m = i == INTERPOLATION_FIN ? plant_decay_m(asset->plant) : 0;
             if (entry && entry->disc_m == group->disc_m && entry->decay_m == decay_m &&
-                (!gp || (entry->deviations && is_as_stated(gp, entry))))
+                (i != INTERPOLATION_GP || (entry->deviations && is_as_stated(group, entry))))
                 continue;
             log_err(log,
                     "asset %s: the sensor weights of group %s are outdated: the tag list, the order of the groups, `disc_m`, `gp`, `min` "

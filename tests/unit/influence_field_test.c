@@ -774,6 +774,7 @@ CASE(test_gp_of_few_sensors_takes_defaults)
         assert_true(entry->range_m > 0);
     }
     write_plant_to(c, "1000", "", ", prepare: [gp], gp: { fit: readings.csv }", 2); /* the defaults depend on the range */
+    assert_null(use(c));
     prep_case_expect(c, "$PLANT", 0);
     struct plant_in_use *u = use_prepared(c);
     assert_true(influence_find(&u->scene->assets[0].file->influence, 0, INTERPOLATION_GP)->deviation > PLANT_GP_DEVIATION * 900);
@@ -844,6 +845,55 @@ CASE(test_weights_of_other_sensors_are_refused)
         prep_case_expect(c, "$PLANT", 0);
         use_prepared(c);
     }
+}
+
+/* Returns the sum of the errors that picks state in the triangles of the first metre of the strip. */
+static double stated_errors(struct plant_in_use *u)
+{
+    const struct asset_view *view = &u->scene->assets[0].file->view;
+    double sum = 0;
+    look(u, 0);
+    for (uint32_t t = 0; t < view->primitives[0].index_count / 3; t++) {
+        struct field_place place = { .parts = { 0.4, 0.3, 0.3 } };
+        struct field_point point;
+        bool is_near = true;
+        for (int k = 0; k < 3; k++) {
+            place.corners[k] = view->indices[3 * t + (uint32_t)k];
+            const float *at_m = view->positions_m[place.corners[k]];
+            is_near &= (double)at_m[0] + view->header->origin_m[0] < 1 && (double)at_m[1] + view->header->origin_m[1] < WIDTH_M + 0.01;
+        }
+        if (is_near && field_at(u->field, 0, &u->params, u->snapshot, &place, &point))
+            sum += point.drawn_error;
+    }
+    return sum;
+}
+
+/* The lost sensor is the only one on the second of two bodies, so that no other sensor determines a value there. The stated errors of the
+   first body stay the same. */
+CASE(test_a_body_without_sensors_leaves_the_errors_of_others)
+{
+    struct cad_random random;
+    struct cad *strip = test_cad(), *cad = test_cad();
+    struct text *rows = test_text();
+    cad_random_start(&random);
+    cad_plate(strip, &random, 20, 1, STRIP_M, WIDTH_M, 0);
+    cad_append(cad, strip, (double[3]){ 0 });
+    cad_append(cad, strip, (double[3]){ 0, 5, 0 });
+    maker_write_cad(c->folder, "model.glb", "strips", cad);
+    write_plant(c, "", ", interpolation: harmonic, disc_m: 0.02", 0);
+    for (size_t i = 0; i < 3; i++)
+        text_add(rows, "T%zu,%zu,Float,plc,temperature,S,,%g,%g,0\n", i, 400001 + 2 * i, i == 0 ? 0.27 : 0.73, i < 2 ? 0.03 : 5.05);
+    prep_case_tags(c, rows->at);
+    prep_case_expect(c, "$PLANT", 0);
+    struct plant_in_use *u = use_prepared(c);
+    u->snapshot->readings[0].value = 70;
+    u->snapshot->readings[1].value = 90;
+    u->snapshot->readings[2].value = 80;
+    const double before = stated_errors(u);
+    u->snapshot->readings[2].quality = QUALITY_BAD;
+    const double after = stated_errors(u);
+    print_message("sum of the stated errors: %g before, %g after the loss\n", before, after);
+    assert_true(before > 1 && fabs(after - before) < 0.01 * before);
 }
 
 /* For an asset without sensors nothing is prepared, and no file is reported as missing. */
