@@ -10,8 +10,7 @@
 #define SAMPLE_OF 8 /* one block of triangles in every SAMPLE_OF is sampled; a power of 2 */
 #define BLOCK 8     /* triangles per block */
 #define GRAIN 4096  /* number of triangles that a thread processes per unit of work, which takes a few tenths of a millisecond */
-/* A level is given up if its estimated triangle count exceeds its limit by this many standard deviations; by none if the finest level
-   reached its triangle limit, because edges then need more splits than estimated. */
+/* a level is given up if its estimated triangle count exceeds its limit by this many standard deviations */
 #define SURE 1.5
 
 /* Returns the number of triangles that will replace a triangle once its interpolation errors are small enough. Splitting an
@@ -25,7 +24,7 @@ static size_t tris_needed(const struct subdiv *subdiv, const struct subdiv_tri *
     return needed;
 }
 
-/* Returns a triangle count that the whole level will probably exceed, estimated from the sampled blocks. The variance between
+/* Returns a lower bound of the whole level's final triangle count, estimated from the sampled blocks. The variance between
  * these blocks gives the uncertainty. */
 static double least_needed_by_sample(const struct subdiv *subdiv)
 {
@@ -40,7 +39,7 @@ static double least_needed_by_sample(const struct subdiv *subdiv)
     }
     mem_free(needed);
     double mean = sum / blocks, deviation = sqrt(fmax(0, squares / blocks - mean * mean) / blocks);
-    return subdiv->sample_of * blocks * (mean - (subdiv->finest_full ? 0 : SURE) * deviation);
+    return subdiv->sample_of * blocks * (mean - SURE * deviation);
 }
 
 struct sum {

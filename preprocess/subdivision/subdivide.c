@@ -49,7 +49,9 @@
 #define SAMPLE_WORTH 9000
 /* the same if the finest level reached its triangle limit: most coarser levels then need too many triangles, too */
 #define SAMPLE_WORTH_FULL 1000
-#define SAMPLE_ROUNDS 4 /* maximum number of rounds of splits on a sample; more would not change the estimate */
+#define SAMPLE_ROUNDS 4 /* maximum number of rounds of splits on a sample; more would hardly change the estimate */
+/* the same if the finest level reached its triangle limit: where many edges must be split many times, the estimate grows with each round */
+#define SAMPLE_ROUNDS_FULL 8
 /* minimum length of the two parts of a split edge in the finest level of detail, in multiples of the model's tolerance; short
  * because sensors may be close together */
 #define SHORTEST_NEAR 0.125
@@ -462,7 +464,7 @@ static void tell_left(struct subdiv *subdiv, struct level *level)
 /* Splits edges in rounds until no error exceeds `limit`, or until the level of detail has reached its triangle limit. */
 static void cut_to(struct subdiv *subdiv, double limit)
 {
-    int rounds = subdiv->sample_blocks ? SAMPLE_ROUNDS : MAX_ROUNDS;
+    int rounds = !subdiv->sample_blocks ? MAX_ROUNDS : subdiv->finest_full ? SAMPLE_ROUNDS_FULL : SAMPLE_ROUNDS;
     for (int round = 0; round < rounds; round++) {
         if (round == 0)
             subdiv_mesh_list_all(&subdiv->mesh);
