@@ -37,13 +37,14 @@ const watchFirst = () => {
 };
 
 // Opens the page. Returns what openPage() returns, the list of all answers, and fetched(), which returns [[path, bytes on the
-// wire], ...] with one entry per request; files below /vendor/ are not counted.
+// wire], ...] with one entry per file; files below /vendor/ are not counted.
 async function openCounted(address, screen, before = null) {
     const answers = [];
     const browser = await openPage(address, screen, before, (page) => page.on('response', (answer) => answers.push(answer)));
     const bytes = async (answer) => [new URL(answer.url()).pathname, Number(await answer.headerValue('content-length'))];
     const counts = ([path]) => !path.startsWith('/vendor/');
-    return { ...browser, answers, fetched: async () => (await Promise.all(answers.map(bytes))).filter(counts) };
+    const fetched = async () => [...new Map((await Promise.all(answers.map(bytes))).filter(counts))]; // each file once
+    return { ...browser, answers, fetched };
 }
 const sum = (files) => files.reduce((all, [, bytes]) => all + bytes, 0);
 
