@@ -54,8 +54,8 @@ struct influence_view {
 bool influence_view_init(struct influence_view *view, const void *bytes, size_t size, uint32_t vertex_count, char why[200]);
 /* Returns the entry of a group and an interpolation, owned by the view. NULL: the file has none. */
 const struct influence_entry *influence_find(const struct influence_view *view, uint32_t group, uint32_t interpolation);
-/* Returns a hash of the indices that an entry's sensors have in the asset file. It distinguishes them from as many other sensors of the
-   asset. */
+/* Returns a hash of the indices that an entry's sensors have in the asset file. Other sensors have another hash, even if they are as
+   many. */
 uint32_t influence_columns_hash(const uint32_t *columns, size_t count);
 /* Returns a pointer to an array of an entry; offset: the member of the entry that says where the array is. */
 const void *influence_array(const struct influence_view *view, uint64_t offset);

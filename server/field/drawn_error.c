@@ -83,9 +83,9 @@ struct drawn_error_job {
     /* [n]: number of the level's triangles that need about n samples (samples_of()) */
     atomic_size_t needing[MAX_PIECES + 1];
     bool has_border;      /* somewhere there is no data: sensors reach a limited distance, or a sensor is lost */
-    /* preparation left no error of values, but the border of the reach may be drawn elsewhere in large triangles: values there do not
-       change if only one sensor has weight, so preparation does not cut them */
-    bool only_border;
+    /* samples only triangles at the border of the reach, because preparation left no error of values in the others. Preparation does
+       not cut triangles in which only one sensor has weight, so a large one may show the border elsewhere */
+    bool at_border_only;
     int most_pieces;      /* triangles that need more samples than this get a bound instead; MAX_PIECES: all are sampled */
     float *errors;        /* interpolation error of each triangle */
     float *ridges;        /* error of values in each triangle where paths from two sides meet; NULL: not measured */
@@ -421,7 +421,7 @@ static bool may_hide_rim(const struct drawn_error_job *job, const uint32_t corne
 static int samples_of(const struct drawn_error_job *job, const uint32_t corners[3], const struct triangle_extent *extent)
 {
     const float longest_m = extent->longest_m;
-    if (job->only_border && !may_hide_rim(job, corners, longest_m))
+    if (job->at_border_only && !may_hide_rim(job, corners, longest_m))
         return 0;
     if (longest_m < 2 * job->error_m || (job->near ? is_even(job->near, longest_m, extent->near_m, extent->far_m) : !extent->data))
         return 0;
@@ -671,7 +671,7 @@ static bool measure_level(struct drawn_error_job *job, const struct asset_level 
     workers_for(workers, blocks, 4, prepare_some, weights);
     if (job->vertex_errors)
         workers_for(workers, blocks, 4, amplify_some, job);
-    job->only_border = resolved;
+    job->at_border_only = resolved;
     if (!resolved || weights->reach_m < INFINITY)
         measure_triangles(job, level, workers);
     spread(weights, job, level);

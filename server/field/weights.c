@@ -127,7 +127,7 @@ static void choose_members(struct weights *weights, const struct field_params *p
 
 /* Returns the number of steps of scalar.lacking per metre. That byte encodes a vertex's distance beyond the border between data
    and no data: 127 is the border, larger values are beyond it. The 127 steps on either side span a fifth of the asset's
-   diagonal. drawn_error.h marks larger triangles in which the border is therefore drawn elsewhere. */
+   diagonal. drawn_error_measure() marks triangles that are too large for this. */
 static float steps_per_m(const struct field_layout *layout)
 {
     const struct asset_header *header = layout->file->view.header;

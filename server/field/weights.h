@@ -99,8 +99,9 @@ struct weights {
     /* erring[b]: fraction of the surface (for prepared interpolations: of the vertices) whose interpolation error is at least
        2^-b; the largest over all measured levels of detail */
     float erring[WEIGHTS_ERRING];
-    /* bit masks of the levels of detail whose errors are included in `errors`: measured_levels: errors of distances; sampled_levels:
-       errors of interpolation and at ridges, too, which are not measured where preparation left none */
+    /* bit masks of the levels of detail whose errors are included in `errors`: measured_levels: errors of distances, and at the border
+       of a limited reach; sampled_levels: errors of interpolation and at ridges, too, which are not measured where preparation left
+       none */
     uint64_t measured_levels, sampled_levels;
     unsigned errors_version;  /* counts the changes of `errors`, so that users can tell that it changed */
     /* [vertex], for interpolations fin and gp: distance in metres by which the vertex is beyond the border of the area with

@@ -35,7 +35,7 @@ struct loop_checks {
     char *folder, *path;
     struct loop_check *at; /* [tag]: newest loop check */
     uint64_t *numbers;     /* [tag]: sequence number (loop_checks_number()) of the tag's newest loop check */
-    uint64_t number, number_of_all;
+    uint64_t number, replaced_number;
     bool begun;
     /* [tag]: true if pictures mark the tag as unproven, because it has no passed loop check (test with a value forced at the
        transmitter); read by the render threads */
@@ -98,7 +98,7 @@ static bool is_current(const struct plant *plant, int tag, uint64_t fingerprint)
     return fingerprint == hash_settings(plant, tag, true) || fingerprint == hash_settings(plant, tag, false);
 }
 
-/* Removes the incomplete characters that shortened texts may end in, because JSON and the file must not contain them. */
+/* Removes an incomplete last character, which shortened texts may have, because JSON and the file must not contain it. */
 static void complete_texts(struct loop_check *check)
 {
     utf8_drop_invalid(check->unit);
@@ -345,7 +345,7 @@ void loop_checks_mirror(struct loop_checks *loop_checks, bool all, bool begun)
     loop_checks->begun = begun;
     loop_checks->number++;
     if (all)
-        loop_checks->number_of_all = loop_checks->number;
+        loop_checks->replaced_number = loop_checks->number;
 }
 
 void loop_checks_mirror_tag(struct loop_checks *loop_checks, int tag, const struct loop_check *check)
@@ -392,9 +392,9 @@ uint64_t loop_checks_number(const struct loop_checks *loop_checks)
     return loop_checks->number;
 }
 
-uint64_t loop_checks_number_of_all(const struct loop_checks *loop_checks)
+uint64_t loop_checks_replaced_number(const struct loop_checks *loop_checks)
 {
-    return loop_checks->number_of_all;
+    return loop_checks->replaced_number;
 }
 
 uint64_t loop_checks_number_of(const struct loop_checks *loop_checks, int tag)

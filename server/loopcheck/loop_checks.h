@@ -60,7 +60,7 @@ bool loop_checks_begun(const struct loop_checks *loop_checks);
 /* Returns a sequence number that increases with each recorded loop check. */
 uint64_t loop_checks_number(const struct loop_checks *loop_checks);
 /* Returns the sequence number of the newest loop_checks_mirror() with `all`; 0: none. */
-uint64_t loop_checks_number_of_all(const struct loop_checks *loop_checks);
+uint64_t loop_checks_replaced_number(const struct loop_checks *loop_checks);
 /* Returns the sequence number of the tag's newest loop check; 0: it was recorded before the daemon started. */
 uint64_t loop_checks_number_of(const struct loop_checks *loop_checks, int tag);
 /* Appends CSV: a header line, then the newest check of every tag that has a source. */

@@ -16,7 +16,7 @@
 
 enum { ROWS_DEFAULT = 1000, MAX_ROWS = 10000 };
 
-/* A list of alarms contains the present time, so a cached text must not be older. */
+/* largest age of a cached list of alarms: the list contains the present time */
 static const int64_t CACHED_TEXT_MAX_AGE_NS = NS_PER_S / 10;
 
 static const char *mode_name(enum alarm_mode mode)

@@ -63,7 +63,7 @@ char *loop_check_do(struct loop_checks *loop_checks, const struct plant *plant, 
 json_t *loop_checks_message(const struct loop_checks *loop_checks, const struct plant *plant, uint64_t since, bool all)
 {
     json_t *list = json_array();
-    all = all || since < loop_checks_number_of_all(loop_checks);
+    all = all || since < loop_checks_replaced_number(loop_checks);
     for (size_t i = 0; i < plant->tag_count; i++) {
         const struct loop_check *check = loop_checks_of(loop_checks, (int)i);
         if (check->state == LOOP_CHECK_NONE || (!all && loop_checks_number_of(loop_checks, (int)i) <= since))
@@ -71,7 +71,7 @@ json_t *loop_checks_message(const struct loop_checks *loop_checks, const struct 
         json_t *row =
             json_pack("[i,s,I,o,o,o,o,o]", (int)i, loop_check_state_names[check->state], (json_int_t)check->time_us, number(check->value),
                       number(check->expected), number(check->tolerance), json_string(check->who), json_string(check->remark));
-        json_array_append_new(list, row); /* no-op if the row is NULL, because memory is short */
+        json_array_append_new(list, row); /* leaves out a NULL row (out of memory) */
     }
     return json_pack("{s:s,s:b,s:b,s:o}", "type", "proofs", "all", all, "begun", loop_checks_begun(loop_checks), "tags", list);
 }

@@ -53,8 +53,8 @@ void connection_log_login(struct server_context *server, struct lws *wsi, const 
                           enum login login);
 /* Copies a request header into out; "" if it is missing. Returns false if it is too long. */
 bool connection_header(struct lws *wsi, enum lws_token_indexes token, char *out, int size);
-/* Returns whether the Origin header of a request is allowed: it names this host, or is absent because the client is not a browser.
-   Otherwise another site's page could use the rights that its visitor has here. */
+/* Returns true if a request has no Origin header, because the client is not a browser, or one that names this host or that --origin allows.
+   Callers refuse other requests: another site's page could use the rights that its visitor has here. */
 bool connection_origin_allowed(const struct server_context *server, struct lws *wsi);
 /* Looks up the machine's host name, which clients may use in the Host header. Call it once, at the start. */
 void connection_learn_host_name(struct server_context *server);

@@ -120,7 +120,7 @@ struct plant_gp { /* parameters of the interpolation `gp` */
 enum { PLANT_BREAKS = 16, PLANT_ISOLINES = 32 };
 /* least width of a colour scale's range, as a fraction of the larger absolute value of its ends: values are stored as 32-bit floats, which
    differ by 6e-8 */
-#define PLANT_LEAST_RANGE 1e-6
+#define PLANT_LEAST_RELATIVE_WIDTH 1e-6
 /* least width of a colour scale's range, in the group's unit: renderers multiply by the reciprocal of the width, which must be finite as a
    32-bit float */
 #define PLANT_LEAST_WIDTH 1e-18
@@ -130,7 +130,7 @@ enum { PLANT_BREAKS = 16, PLANT_ISOLINES = 32 };
 /* Returns whether [min, max] can be the range of a colour scale. */
 static inline bool plant_range_is_wide(double min, double max)
 {
-    return max - min >= fmax(PLANT_LEAST_WIDTH, PLANT_LEAST_RANGE * fmax(fabs(min), fabs(max)));
+    return max - min >= fmax(PLANT_LEAST_WIDTH, PLANT_LEAST_RELATIVE_WIDTH * fmax(fabs(min), fabs(max)));
 }
 
 struct plant_group {

@@ -9,7 +9,7 @@
 
 enum { SIGNATURE_BYTES = 8, CHUNK_BYTES = 12 /* CHUNK_BYTES: length, type, checksum */, HEAD_BYTES = 13 };
 
-/* Returns the value of the part whose name, with its equals sign, is `name`, or NULL. Parts are separated by ", ". */
+/* Returns the value of the part whose name is `name`, which includes the equals sign; NULL: there is none. Parts are separated by ", ". */
 static const char *value_of(const char *header, const char *name)
 {
     const char *at = header;

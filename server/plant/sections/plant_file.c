@@ -344,7 +344,7 @@ static void read_group(struct yaml_reader *reader, yaml_node_t *node, struct pla
         yaml_error(reader, yaml_map_place(&map, "min"),
                    "min, max: the range from %.17g to %.17g is too narrow: max must exceed min by at least %g, and by at least %g of the "
                    "larger of their absolute values",
-                   group->min, group->max, PLANT_LEAST_WIDTH, PLANT_LEAST_RANGE);
+                   group->min, group->max, PLANT_LEAST_WIDTH, PLANT_LEAST_RELATIVE_WIDTH);
     if (group->log && yaml_map_good(&map, "min") && !(group->min >= PLANT_LEAST_LOG))
         yaml_error(reader, yaml_map_place(&map, "scale"), "scale: a logarithmic scale needs min of at least %g, found %.9g",
                    PLANT_LEAST_LOG, group->min);
