@@ -148,21 +148,28 @@ test('an error in one pane does not stop the panes after it; a tag that a pane\'
     const other = await openPage(`${plant.url}?wall=room`, { viewport: { width: 960, height: 540 } }), own = other.page;
     await own.waitForFunction(inner);
     await own.locator('.clock b', { hasText: ':' }).waitFor();
+    await plant.ask('set PI-1 95');
+    await own.locator('.pane.alarms li', { hasText: 'PI-1' }).waitFor();
     const failing = own.waitForEvent('console', (message) => message.text().includes('no such pane'));
     await own.evaluate(() => {
-        const [views, alarms] = globalThis.wall.panes, { tick } = alarms;
-        alarms.tick = () => { throw new Error('no such pane'); };
-        globalThis.restore = () => { alarms.tick = tick; };
+        const [views] = globalThis.wall.panes, broken = globalThis.wall.session.model.tag('PI-1'), { description } = broken;
+        const get = () => { throw new Error('no such pane'); };
+        Object.defineProperty(broken, 'description', { configurable: true, get });
+        globalThis.restore = () => Object.defineProperty(broken, 'description', { value: description, writable: true });
         const { model } = views.element.querySelector('iframe').contentWindow.plantcast.session, { tag } = model;
         model.tag = (name) => (name === 'PI-1' ? null : tag.call(model, name));
         globalThis.learn = () => { delete model.tag; };
     });
+    await own.setViewportSize({ width: 960, height: 500 }); // makes the list of alarms build its rows, which fails
     await failing;
     const clock = await own.locator('.clock b').textContent();
     await own.waitForFunction((before) => document.querySelector('.clock b').textContent !== before, clock);
     await own.locator('.pane.alarms > .failure', { hasText: 'out of date' }).waitFor();
     assert.equal(await own.locator('.failure').count(), 1);
     await shoot(own, 'wall-display-error');
+    const covered = await own.locator('.clock b').textContent();
+    await own.waitForFunction((before) => document.querySelector('.clock b').textContent !== before, covered);
+    assert.equal(await own.locator('.pane.alarms > .failure').count(), 1, 'an unchanged list stays covered');
     await own.evaluate(() => globalThis.restore());
     await own.waitForFunction(() => !document.querySelector('.failure'));
     await plant.ask('set PI-1 5');

@@ -90,6 +90,7 @@ function ViewsPane(pane, context) {
     // the heading of a view whose picture has not arrived yet: until then, the heading must name the previous view, which is
     // still in the picture
     let due = null, isOpened = false;
+    let isDone = false; // true: showView() or showAlarm() has succeeded for `shown`; after an error, the next tick tries again
     let sender = null; // the part of the heading that byWhom() states; its text also changes at midnight
     const words = make('span', { class: 'said' }), about = make('span', { class: 'about' }), why = make('p', { class: 'why' });
     title.append(words, about);
@@ -185,15 +186,16 @@ function ViewsPane(pane, context) {
         element.classList.toggle('called', Boolean(alarm));
         const isNew = wanted !== shown || page !== shownIn;
         if (isNew)
-            [shown, shownIn, changedAt] = [wanted, page, now];
+            [shown, shownIn, changedAt, isDone] = [wanted, page, now, false];
         // hides the old picture and its legend until the alarm's picture arrives
         element.classList.toggle('coming', Boolean(alarm) && isComing(page, alarm, now));
-        if (!isNew && alarm)
+        if (isDone && alarm)
             sayNow(alarm);
-        else if (isNew && alarm)
+        else if (!isDone && alarm)
             showAlarm(page, alarm);
-        else if (isNew)
+        else if (!isDone)
             showView(page, order, unshown);
+        isDone = true;
         if (order && sender)
             setText(sender, byWhom(order));
         if (due && (unshown || hasArrived(page, now))) {
@@ -226,8 +228,8 @@ function TrendPane(pane, context) {
             .join(' · '));
         if (begun === page || !page?.session.model)
             return;
-        begun = page;
         page.modules.use('trends', (trends) => trends.compare(pane.items, pane.hours * 3600));
+        begun = page;
     } };
 }
 
@@ -288,13 +290,13 @@ function AlarmsPane(pane, { session, call, title, body }) {
             [alarm.id, alarm.state, alarm.priority, alarm.raisedUs, flood ? '' : nowText(session, alarm)])]);
         if (now === said)
             return;
-        said = now;
         title.replaceChildren(pane.title ?? say('alarms.title'), make('span', {}, flood ? say('walls.flood', { active, waiting })
             : active === 0 && waiting === 0 ? say('alarms.none') : say('walls.counts', { active, waiting })), about);
         if (flood)
             fill(byEquipment(all.filter(({ state }) => !isGone(state))).map(rowOfMany));
         else
             fill(all.map(rowOf), () => all.map(briefRowOf));
+        said = now; // after an error above, the next tick tries again
     } };
 }
 
@@ -317,7 +319,6 @@ function TilesPane(pane, { session, body, title }) {
         const text = JSON.stringify([tag.limits ?? {}, group.min, group.max]);
         if (text === tile.limits)
             return;
-        tile.limits = text;
         tile.bar.querySelectorAll('.limit').forEach((one) => one.remove());
         const limits = Object.entries(tag.limits ?? {}).filter(([, one]) => Number.isFinite(one)), { L, H } = Object.fromEntries(limits);
         const [low, high] = [shareOf(group, L ?? group.min), shareOf(group, H ?? group.max)];
@@ -328,6 +329,7 @@ function TilesPane(pane, { session, body, title }) {
             setVariable(line, '--at', shareOf(group, limit));
             tile.bar.append(line);
         }
+        tile.limits = text;
     }
 
     // Shows in a tile that the plant does not have the tile's tag.
@@ -342,8 +344,8 @@ function TilesPane(pane, { session, body, title }) {
         const text = alarm ? `${alarm.priority} ${alarm.state}` : '';
         if (tile.flag.dataset.shows === text)
             return;
-        tile.flag.dataset.shows = text;
         tile.flag.replaceChildren(...(alarm ? [badge(alarm.priority, isGone(alarm.state))] : []));
+        tile.flag.dataset.shows = text;
     }
 
     let fitted = '';
