@@ -152,10 +152,15 @@ test('an error in one pane does not stop the panes after it; a tag that a pane\'
     await own.locator('.pane.alarms li', { hasText: 'PI-1' }).waitFor();
     const failing = own.waitForEvent('console', (message) => message.text().includes('no such pane'));
     await own.evaluate(() => {
-        const [views] = globalThis.wall.panes, broken = globalThis.wall.session.model.tag('PI-1'), { description } = broken;
+        const [views, , tiles] = globalThis.wall.panes, broken = globalThis.wall.session.model.tag('PI-1'), { description } = broken;
         const get = () => { throw new Error('no such pane'); };
         Object.defineProperty(broken, 'description', { configurable: true, get });
-        globalThis.restore = () => Object.defineProperty(broken, 'description', { value: description, writable: true });
+        const { tick } = tiles;
+        tiles.tick = () => { throw new Error(); }; // without a message
+        globalThis.restore = () => {
+            Object.defineProperty(broken, 'description', { value: description, writable: true });
+            tiles.tick = tick;
+        };
         const { model } = views.element.querySelector('iframe').contentWindow.plantcast.session, { tag } = model;
         model.tag = (name) => (name === 'PI-1' ? null : tag.call(model, name));
         globalThis.learn = () => { delete model.tag; };
@@ -165,7 +170,8 @@ test('an error in one pane does not stop the panes after it; a tag that a pane\'
     const clock = await own.locator('.clock b').textContent();
     await own.waitForFunction((before) => document.querySelector('.clock b').textContent !== before, clock);
     await own.locator('.pane.alarms > .failure', { hasText: 'out of date' }).waitFor();
-    assert.equal(await own.locator('.failure').count(), 1);
+    await own.locator('.pane.tiles > .failure').waitFor();
+    assert.equal(await own.locator('.failure').count(), 2);
     await shoot(own, 'wall-display-error');
     const covered = await own.locator('.clock b').textContent();
     await own.waitForFunction((before) => document.querySelector('.clock b').textContent !== before, covered);

@@ -136,9 +136,10 @@ function tickPane(pane, now) {
         pane.tick(now);
         pane.error = null;
     } catch (error) {
-        if (pane.error !== error.message)
+        const text = String(error); // not empty, unlike error.message
+        if (pane.error !== text)
             console.error(error);
-        pane.error = error.message;
+        pane.error = text;
     }
     if (pane.error !== before)
         showError(pane, pane.error);
