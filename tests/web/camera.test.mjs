@@ -278,6 +278,23 @@ test('a flight starts and ends as requested, stays level, and turns by the short
     assert.ok(eastMost > 40, 'the flight turns by the east, not around by the west');
 });
 
+test('a flight from a plan with north at the top, and back, does not turn the picture at its ends', () => {
+    const vertical = [0, 0, 1], plan = { eye: [1, 2, 90], target: [1, 2, 0], up: [0, 1, 0], fov: 45 };
+    const below = { ...plan, eye: [1, 2, -90] }, almost = { ...plan, eye: [1.2, 2, 90] };
+    for (const one of [plan, below, almost, toParallel(plan)]) {
+        const tag = face(one, [4, 2, 0.5], { min: [-2, -2, 0], max: [4, 6, 1] }, 5, 20, vertical);
+        const [away, back] = [[one, tag], [tag, one]].map(([from, to]) => flight(from, to, FLIGHT_MS, vertical));
+        assert.notEqual(away(0), tag);
+        for (const [seen, at] of [[away(0), one], [away(FLIGHT_MS - 0.01), tag], [back(0), tag], [back(FLIGHT_MS - 0.01), one]])
+            for (const axis of ['right', 'up', 'forward'])
+                assert.ok(dot(basis(seen)[axis], basis(at)[axis]) > 0.999, `${axis} of ${JSON.stringify({ seen, at })}`);
+        for (let ms = 0; ms < FLIGHT_MS; ms += 20)
+            assert.ok(valid(away(ms)) && away(ms) !== tag);
+    }
+    const moved = { ...plan, eye: [9, 2, 90], target: [9, 2, 0] };
+    closeTo(flight(plan, moved, FLIGHT_MS, vertical)(0).eye, plan.eye, 1e-9);
+});
+
 test('orthographic: every metre has its pixels, at any distance', () => {
     const c = { eye: [0, -10, 0], target: [0, 0, 0], up: [0, 0, 1], fov: 45, height_m: 8 };
     const project = projector(c, 1600, 800);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Computes the cameras of a flight from one view to another. The horizon stays level, and the camera turns the shorter way.
-import { isParallel, valid } from './camera.js';
-import { distance, toParallel, toPerspective } from './camera_moves.js';
+import { basis, isParallel, RADIANS, valid } from './camera.js';
+import { distance, elevation, MAX_ELEVATION_DEG, toParallel, toPerspective } from './camera_moves.js';
 import { add, cross, dot, mix, scale, subtract, unit } from './vector.js';
 
 export const FLIGHT_MS = 700;
@@ -13,15 +13,22 @@ function frame(up) {
     return { x, y: cross(z, x), z };
 }
 
+// Returns true if a camera looks straight down or up along `vertical`, as in a plan with north at the top.
+const isSteep = (camera, vertical) => Math.abs(elevation(camera, vertical)) > MAX_ELEVATION_DEG;
+
+// Returns the direction from the target to the eye as angles about axes.z. The azimuth of a camera that looks straight down is that of the
+// picture's lower edge; of one that looks straight up, that of the upper edge.
 function angles(camera, axes) {
-    const v = unit(subtract(camera.eye, camera.target));
-    return { azimuth: Math.atan2(dot(v, axes.y), dot(v, axes.x)), elevation: Math.asin(Math.max(-1, Math.min(1, dot(v, axes.z)))) };
+    const degrees = elevation(camera, axes.z), most = MAX_ELEVATION_DEG;
+    const v = isSteep(camera, axes.z) ? scale(basis(camera).up, -Math.sign(degrees)) : subtract(camera.eye, camera.target);
+    return { azimuth: Math.atan2(dot(v, axes.y), dot(v, axes.x)), elevation: Math.max(-most, Math.min(most, degrees)) * RADIANS };
 }
 
-// Returns a function from milliseconds since the start to the camera; from durationMs on it returns exactly `to`.
-export function flight(start, to, durationMs = FLIGHT_MS) {
+// Returns a function from milliseconds since the start to the camera; from durationMs on it returns exactly `to`. vertical: the plant's
+// upward direction.
+export function flight(start, to, durationMs = FLIGHT_MS, vertical = to.up) {
     const from = isParallel(start) === isParallel(to) ? start : isParallel(to) ? toParallel(start) : toPerspective(start);
-    const axes = frame(to.up);
+    const up = isSteep(to, vertical) && !isSteep(from, vertical) ? vertical : to.up, axes = frame(up);
     const a = angles(from, axes), b = angles(to, axes);
     const turn = Math.atan2(Math.sin(b.azimuth - a.azimuth), Math.cos(b.azimuth - a.azimuth));
     const near = distance(from), far = distance(to);
@@ -35,7 +42,7 @@ export function flight(start, to, durationMs = FLIGHT_MS) {
         const target = mix(from.target, to.target, t);
         const eye = add(target, scale(towards, near * (far / near) ** t));
         const lens = isParallel(to) ? { height_m: from.height_m * (to.height_m / from.height_m) ** t } : {};
-        const camera = { eye, target, up: to.up, fov: from.fov + (to.fov - from.fov) * t, ...lens };
+        const camera = { eye, target, up, fov: from.fov + (to.fov - from.fov) * t, ...lens };
         return valid(camera) ? camera : to;
     };
 }

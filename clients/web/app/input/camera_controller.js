@@ -245,7 +245,7 @@ export class CameraController {
 
     steer(camera) {
         const still = window.matchMedia('(prefers-reduced-motion: reduce)').matches;
-        this.fly = { path: flight(this.session.camera, camera, still ? 0 : FLIGHT_MS), start: null };
+        this.fly = { path: flight(this.session.camera, camera, still ? 0 : FLIGHT_MS, this.vertical), start: null };
         this.viewport.invalidate();
     }
 
