@@ -5,6 +5,7 @@ import assert from 'node:assert/strict';
 import { mock, test } from 'node:test';
 import { cardPlace } from '../../clients/web/app/cards/card_position.js';
 import { Place } from '../../clients/web/app/cards/place.js';
+import { Commands } from '../../clients/web/app/input/commands.js';
 import { Remote } from '../../clients/web/app/views/remote.js';
 import { projector } from '../../clients/web/core/camera.js';
 import { Repeater } from '../../clients/web/core/requests.js';
@@ -129,8 +130,32 @@ test('the card of a point waits for slow answers, and asks for the clicked point
         assert.deepEqual(lost, [[30, 40], [30, 40]], 'a request that the wheel has replaced is sent again at once');
         answer(4, { asset: 'E-103' });
         assert.equal(place.picked.asset, 'E-103');
+        for (const purpose of ['sight', 'measure', 'placing']) {
+            place.open(50, 60);
+            sent.length = 0;
+            answer(5, { purpose });
+            answer(6, { asset: 'E-104' });
+            assert.deepEqual([sent.length, place.picked.asset], [0, 'E-103'], `a later choice of the user remains: ${purpose}`);
+        }
     } finally {
         calls.restore();
+    }
+});
+
+test('a selection ends the wait for the answer about a clicked point', () => {
+    const camera = { ...LENS, eye: [0, 0, 0], target: [0, 9, 0] }, { place, answer } = placeAt(camera), { document } = globalThis;
+    globalThis.document = { getElementById: () => ({ classList: { toggle() {} } }) };
+    try {
+        const modules = { there: (name) => (name === 'place' ? place : null), get() {}, use() {} };
+        const commands = new Commands({ session: place.session, modules, selection: {}, saveAddress() {}, refresh() {} });
+        for (const choose of [() => commands.selectTag({ name: 'TI-1' }), () => commands.selectAsset({ id: 'E-105', bounds: {} })]) {
+            place.open(70, 80);
+            choose();
+            answer(2, { asset: 'E-104' });
+            assert.equal(place.picked.asset, 'E-101');
+        }
+    } finally {
+        globalThis.document = document;
     }
 });
 

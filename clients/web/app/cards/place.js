@@ -12,6 +12,8 @@ import { closeButton, fill } from '../common/widgets.js';
 
 // largest distance in metres between two answers about the same point
 const SAME_M = 0.05;
+// purposes of requests that the page makes without a choice of the user, and which may replace this card's request
+const INCIDENTAL = ['anchor', 'point'];
 
 export class Place {
     // showAsset(how, asset) hides an asset, makes it transparent or isolates it (hides all others). makeRoom() closes panels that leave no
@@ -82,9 +84,9 @@ export class Place {
         const { asked } = this, again = asked === 'again';
         this.end();
         // The server answers only the newest pick request of the session. Another module's answer means that this card's request was
-        // replaced. A replaced request for a clicked point is sent again.
+        // replaced. The request for a clicked point is sent again, unless the user has chosen something else since the click.
         if (picked.purpose !== 'place') {
-            if (!again)
+            if (!again && INCIDENTAL.includes(picked.purpose))
                 this.send(asked);
             return;
         }

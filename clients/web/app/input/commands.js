@@ -46,6 +46,7 @@ function commandsOf({ session, viewport, modules, selection, overlay, saveAddres
     function selectTag(tag) {
         selection.tag = tag?.name ?? null;
         selection.hover = null;
+        modules.there('place')?.end(); // a late answer about a clicked point must not replace this selection
         if (tag) {
             modules.get('card');
         }
@@ -70,6 +71,7 @@ function commandsOf({ session, viewport, modules, selection, overlay, saveAddres
     }
 
     function selectAsset(asset) {
+        modules.there('place')?.end();
         const again = session.params.selected === asset.id;
         if (!again)
             session.setParams({ selected: asset.id });
