@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Trends of up to eight tags: recorded values over a relative or absolute time range, with zoom and pan. Plot draws the curves,
 // two units to a chart; TrendTable shows numbers.
+import { calls, isGone } from '../../core/alarms.js';
 import { timeOrDay, unitText, valueText, zoneClock, zoneOf } from '../../core/format.js';
 import { ask, askInTime, BAD, gaps } from '../../core/history.js';
 import { fieldText } from '../../core/instant.js';
@@ -486,25 +487,28 @@ export class Trends {
         this.redraw();
     }
 
-    // Returns the kinds of a tag's alarms that are active now and were raised before an instant.
-    activeKinds(name, us) {
-        const isActive = ({ tag, active, raisedUs }) => tag.name === name && active && raisedUs < us;
-        return [...this.session.model?.alarms?.rows.values() ?? []].filter(isActive).map(({ kind }) => kind);
+    // Returns a tag's annunciated alarms that are active now and were raised before an instant, in the form of alarmSpans().
+    activeAlarms(name, us) {
+        return [...this.session.model?.alarms?.rows.values() ?? []]
+            .filter(({ tag, state, raisedUs }) => tag.name === name && calls(state) && !isGone(state) && raisedUs < us)
+            .map(({ raisedUs, kind, priority, value, limit }) => ({ us: raisedUs, endUs: null, tag: name, kind, priority, value, limit }));
     }
 
     // Returns a promise of a tag's alarms in a time range: { alarms, isCut (true: the earliest ones are missing) }. Reads the journal back
-    // to the start of the range, and further until it has the raises of all active alarms. Alarms from before the range that have cleared
-    // are included only if a page that was read has their raise. Stops reading pages if the tag is removed from the charts.
+    // to the start of the range. Earlier alarms are included if they are still active, or if a page that was read has their raise. Stops
+    // reading pages if the tag is removed from the charts.
     async alarmsOf(tag, [from, to]) {
         const { name, unit } = tag, rows = [], query = { tag: name, to: (to / 1e6).toFixed(3), limit: ALARM_ROWS };
-        const active = this.activeKinds(name, to), isRaised = (kind) => rows.some((row) => row.kind === kind && row.event === 'raise');
-        const isCut = () => query.before !== null && !(rows.at(-1)?.time_us <= from && active.every(isRaised));
+        const isCut = () => query.before !== null && !(rows.at(-1)?.time_us <= from);
         for (let i = 0; i < ALARM_PAGES && isCut() && this.tags.includes(tag); i++) {
             const page = await askInTime('api/v1/alarms/journal', query, this.session.token);
             rows.push(...page.rows);
             query.before = page.next_before;
         }
-        return { alarms: alarmSpans(rows, unit).filter(({ endUs }) => endUs === null || endUs > from), isCut: isCut() };
+        const spans = alarmSpans(rows, unit).filter(({ endUs }) => endUs === null || endUs > from);
+        const isNew = ({ kind }) => !spans.some((span) => span.kind === kind && span.endUs === null);
+        const alarms = [...this.activeAlarms(name, to).filter(isNew), ...spans].sort((a, b) => a.us - b.us);
+        return { alarms, isCut: isCut() };
     }
 
     // --- charts
