@@ -69,7 +69,9 @@ test('a view without group, colour map or environment has those of a new view, w
 test('a viewer\'s new view has no engineer-only parameters of the view before it', () => {
     const { session, say } = greeted('viewer'), { id } = session.group;
     const views = [{ id: 'saved', view: 'look=flat' }, { id: 'far', view: 'reach=1', fixed: true },
-        { id: 'lost', view: 'group=x', wrong: 'x', fixed: true }, { id: 'home', view: 'look=flat', fixed: true }];
+        { id: 'lost', view: 'group=x', wrong: 'x', fixed: true }, { id: 'then', view: 'at=1', fixed: true },
+        { id: 'change', view: 'show=difference&baseline=morning', fixed: true }, { id: 'lit', view: 'light=0,0,1', fixed: true },
+        { id: 'half', view: 'split=show:difference', fixed: true }, { id: 'home', view: 'look=flat', fixed: true }];
     say({ type: 'views', list: views });
     assert.equal(newView(session, { group: id }).named, undefined, 'all parameters have their default values');
     session.params = { ...session.params, reach_m: 0.1 };

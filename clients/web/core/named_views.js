@@ -45,13 +45,20 @@ export function viewOf(session, text, id) {
 
 // Returns the parameters of a new view of a tag's group, in which the tag's equipment is visible. tag.group null: the group that is shown.
 // Users other than engineers cannot send default values of engineer-only parameters. Such users get these values from a view of the plant
-// file that has default values.
+// file, see hasDefaults().
 export function newView(session, { group, asset }) {
     const id = group ?? session.params.group, { params } = viewOf(session, id ? `group=${encodeURIComponent(id)}` : '');
     const [hidden, ghost] = [params.hidden, params.ghost].map((ids) => ids.filter((one) => one !== asset));
     const usual = maySendAll(session.role) || engineersOf(session) === null ? null
-        : session.views.find(({ fixed, wrong, view }) => fixed && !wrong && !isEngineers(view));
+        : session.views.find(hasDefaults);
     return { ...params, hidden, ghost, ...(usual ? { named: usual.id } : {}) };
+}
+
+// Returns true if the server can show a view of the plant file at present, and the view has the default values of all parameters that
+// newView() does not send. A difference needs a stored baseline, which may not exist.
+function hasDefaults({ fixed, wrong, view }) {
+    const { params, time } = readAddress(view);
+    return fixed && !wrong && !isEngineers(view) && !params.light && !time.atUs && !/show[=:]difference/.test(view);
 }
 
 // Returns true if a view has engineer-only parameters.
