@@ -5,7 +5,7 @@ import { AlarmCall } from '../core/alarm_call.js';
 import { Connection } from '../core/connection.js';
 import { zoneClock } from '../core/format.js';
 import { health } from '../core/health.js';
-import { askInTime } from '../core/history.js';
+import { askInTime, loaderOf } from '../core/history.js';
 import { Session } from '../core/session.js';
 import { brightness, burnShift, millimetresPerPx, SPREAD_MS, wallFit } from '../core/wall.js';
 import { language, learnWords, say } from '../core/words.js';
@@ -21,8 +21,7 @@ import { areaOf, paneOf } from './panes.js';
 import { Pairing } from './pairing.js';
 import { tileOf } from './tile.js';
 
-// WALLS_RETRY_MS: delay in milliseconds before a failed request for the walls is repeated
-const TICK_MS = 250, LOST_MS = 3000, WALLS_RETRY_MS = 5000;
+const TICK_MS = 250, LOST_MS = 3000;
 // LEAST: minimum size of a display in units of the page (CSS pixels before scaling); LETTERS_MM: height in millimetres of the
 // letters of the message that the connection is lost
 const LEAST = { width: 560, height: 315 }, LETTERS_MM = 100;
@@ -100,21 +99,16 @@ function build(walls) {
 const sayWho = () => wall?.displays[number - 1] && !session.model?.plant.only &&
     session.post({ type: 'display', wall: wall.id, display: number });
 
-let looking;
-async function look() {
-    clearTimeout(looking);
-    try {
-        const { walls } = await askInTime('api/v1/walls', {}, session.token), now = JSON.stringify(walls);
-        if (now !== shape)
-            build(walls);
+const look = loaderOf(session, () => askInTime('api/v1/walls', {}, session.token), (answer, error) => {
+    const now = JSON.stringify(answer?.walls);
+    if (error && !shape)
+        sayWrong(error.message);
+    else if (!error && now !== shape) {
+        build(answer.walls);
         shape = now;
-    } catch (error) {
-        if (!shape)
-            sayWrong(error.message);
-        looking = setTimeout(() => session.welcomed && look(), WALLS_RETRY_MS);
     }
     sayWho();
-}
+});
 
 // --- periodic work
 
