@@ -31,8 +31,8 @@ export function same(a, b) {
     return a === b || (sameLens && ['eye', 'target', 'up'].every((k) => a[k].every((x, i) => x === b[k][i])));
 }
 
-// Returns the unit vectors of the picture: `forward` into the picture, `right`, and `up` in the picture's plane (camera.up is the plant's
-// vertical instead).
+// Returns the unit vectors of the picture: `forward` into the picture, `right`, and `up` in the picture's plane. camera.up need not be
+// perpendicular to `forward`: it is the plant's vertical, except in views that look straight down or up.
 export function basis(camera) {
     const forward = unit(subtract(camera.target, camera.eye));
     const right = unit(cross(forward, camera.up));
