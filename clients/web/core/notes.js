@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Shift notes: where they are in the plant, and until when they are valid.
-import { zoneClock } from './format.js';
+import { dateTime, zoneClock } from './format.js';
 import { say } from './words.js';
 
 // Returns the note's position [x, y, z], or null if this plant no longer has its tag or equipment.
@@ -20,10 +20,7 @@ export const isOfPlant = ({ tag, asset, position }) => !tag && !asset && !positi
 // Returns the name of the tag or equipment that a note is about, or words for the plant or a place.
 export const whereText = (model, note) => whereOf(model, note) ?? say(isOfPlant(note) ? 'notes.plant' : 'notes.place');
 
-const timeText = (model, us) => {
-    const { date, time } = zoneClock(model.plant.time_zone)(us / 1000);
-    return `${date} ${time.slice(0, 5)}`;
-};
+const timeText = (model, us) => dateTime(zoneClock(model.plant.time_zone), us / 1000);
 export const endText = (model, { until_us: until }) => (until ? say('notes.ends', { time: timeText(model, until) }) : null);
 
 // Returns what a note is about, who wrote it and when, and until when it is valid.
