@@ -263,15 +263,16 @@ test('a path pattern decides which asset a node belongs to that moves to another
     const model = join(folder, 'm.gltf');
     const units = (tree) => {
         const nodes = [];
-        const add = ([name, below]) => {
-            const index = nodes.push({ name }) - 1;
+        const add = ([name, below, guid]) => {
+            const index = nodes.push({ name, ...guid && { extras: { GlobalId: guid } } }) - 1;
             Object.assign(nodes[index], Array.isArray(below) ? { children: below.map(add) } : { mesh: 0, translation: [below, 0, 0] });
             return index;
         };
         const scene = tree.map(add);
         writeFileSync(model, JSON.stringify(boxModel(nodes, { scene })));
     };
-    const P1 = ['P-1', 0], P2 = ['P-2', 4], Q1 = ['Q-1', 20];
+    const P1 = ['P-1', 0], P2 = ['P-2', 4], Q1 = ['Q-1', 20], R1 = ['R-1', 40];
+    const GUIDS = [['Unit 1', [P1, [...P2, 'guid']]], ['Unit 2', [Q1]]];
     const old = [['Unit 1', [P1, P2]], ['Unit 2', [Q1]]];
     for (const [was, is, first, second, lost] of [
         [old, [['Unit 1', [P1]], ['Unit 2', [Q1, P2]]], 'Unit 1/*', 'Unit 1/*', true],
@@ -282,6 +283,10 @@ test('a path pattern decides which asset a node belongs to that moves to another
             true],
         [old, [['Unit 1', [P1, ['Rack', [P2]]]], ['Unit 2', [Q1]]], 'Unit 1/P-*', ['Unit 1/P-*', 'P-2'], false],
         [old, [['Unit 1A', [P1, P2]], ['Unit 2', [Q1]]], 'Unit 1/*', ['P-1', 'P-2'], false],
+        [GUIDS, [['Unit 1', [P1]], ['Unit 2', [Q1, ['P-2A', 4, 'guid']]]], 'Unit */P-2', 'P-2A', false], // its name has changed
+        // no other asset selects the node below Unit 3
+        [[...old, ['Unit 3', [R1]]], [['Unit 1', [P1]], ['Unit 2', [Q1]], ['Unit 3', [R1, P2]]], 'Unit 1/P-2', 'P-2', false],
+        [[...old, ['Unit 3', [R1]]], [['Unit 1', [P1]], ['Unit 2', [Q1]], ['Unit 3', [R1, P2]]], 'Unit 1/*', ['Unit 1/*', 'P-2'], false],
         [old, [['Site', [['Unit 1', [P1, P2]], ['Unit 2', [Q1]]]]], '/Unit 1/*', ['P-1', 'P-2'], false],
     ]) {
         const plant = mkdtempSync(join(folder, 'plant-'));

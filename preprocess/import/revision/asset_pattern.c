@@ -37,7 +37,8 @@ void asset_patterns_init(struct asset_patterns *patterns, const struct model_hea
                                          .pairs = pairs,
                                          .old_names = sorted_names(before),
                                          .new_names = sorted_names(after),
-                                         .found = mem_array(most + 1, sizeof(*patterns->found)) };
+                                         .found = mem_array(most + 1, sizeof(*patterns->found)),
+                                         .gained = mem_array(after->count + 1, sizeof(*patterns->gained)) };
 }
 
 void asset_patterns_finish(struct asset_patterns *patterns)
@@ -45,6 +46,7 @@ void asset_patterns_finish(struct asset_patterns *patterns)
     mem_free(patterns->old_names);
     mem_free(patterns->new_names);
     mem_free(patterns->found);
+    mem_free(patterns->gained);
     *patterns = (struct asset_patterns){ 0 };
 }
 
@@ -111,6 +113,39 @@ static void mark(const struct model_header *header, uint32_t node, bool *marked)
         marked[i] = true;
 }
 
+/* Sets *marked for each node that an asset's paths and wildcards select. Ignores plain names and numbers, which
+ * asset_patterns_update() rewrites. */
+static void select_nodes(struct asset_patterns *patterns, const struct model_header *header, const uint32_t *names, const char *lines,
+                         bool *marked)
+{
+    for (int excludes = 0; excludes < 2; excludes++) {
+        char *copy = mem_strdup(lines), *next = copy;
+        for (char *line = strsep(&next, "\n"); line; line = strsep(&next, "\n")) {
+            if ((line[0] == '!') != excludes || (!excludes && !strpbrk(line, "*?[/")))
+                continue;
+            size_t count = find(patterns, header, names, line + excludes);
+            for (size_t i = 0; i < count; i++)
+                memset(marked + patterns->found[i], !excludes, header->nodes[patterns->found[i]].end - patterns->found[i]);
+        }
+        mem_free(copy);
+    }
+}
+
+void asset_patterns_add_gained(struct asset_patterns *patterns, const char *lines)
+{
+    if (!strpbrk(lines, "*?[/"))
+        return;
+    bool *was = mem_array(patterns->before->count + 1, sizeof(*was)), *is = mem_array(patterns->after->count + 1, sizeof(*is));
+    select_nodes(patterns, patterns->before, patterns->old_names, lines, was);
+    select_nodes(patterns, patterns->after, patterns->new_names, lines, is);
+    for (size_t i = 0; i < patterns->after->count; i++) {
+        int old = patterns->pairs->to_old[i];
+        patterns->gained[i] |= is[i] && old >= 0 && !was[old];
+    }
+    mem_free(was);
+    mem_free(is);
+}
+
 static void add_line(struct text *out, const char *sign, const char *pattern)
 {
     text_add(out, "%s%s%s", out->length > 0 ? "\n" : "", sign, pattern);
@@ -131,14 +166,12 @@ static bool is_path(const char *pattern, const char *name)
     return strchr(pattern, '/') && strncmp(pattern, "mesh:", 5) != 0 && strcmp(pattern, name) != 0 && fnmatch(pattern, name, 0) != 0;
 }
 
-/* Returns whether a node no longer matches a path pattern because one of the ancestors that the path names has become another
- * node. Ignores ancestors that only one of the models has: these were renamed, added or removed. */
-static bool has_moved(const struct asset_patterns *patterns, const char *pattern, uint32_t node)
+/* Returns whether one of the ancestors that a path pattern names has become another node. Ignores ancestors that only one of the
+ * models has: these were renamed, added or removed. */
+static bool has_other_ancestor(const struct asset_patterns *patterns, const char *pattern, uint32_t node)
 {
     int from = (int)node, to = patterns->pairs->to_new[node];
     bool any_depth = strstr(pattern, "**");
-    if (to < 0 || !is_path(pattern, patterns->before->nodes[node].name))
-        return false;
     for (const char *slash = strchr(pattern, '/'); slash; slash = any_depth ? slash : strchr(slash + 1, '/')) {
         from = paired_ancestor(patterns->before, patterns->pairs->to_new, from);
         to = paired_ancestor(patterns->after, patterns->pairs->to_old, to);
@@ -148,11 +181,32 @@ static bool has_moved(const struct asset_patterns *patterns, const char *pattern
     return false;
 }
 
+/* Returns whether the ancestors of a node of the new model match a path pattern, whatever the node's own name is. */
+static bool ancestors_match(struct asset_patterns *patterns, const char *pattern, uint32_t node)
+{
+    char *any = mem_printf("%.*s*", (int)(strrchr(pattern, '/') + 1 - pattern), pattern);
+    size_t count = find(patterns, patterns->after, patterns->new_names, any);
+    bool match = false;
+    for (size_t i = 0; i < count; i++)
+        match |= patterns->found[i] == node;
+    mem_free(any);
+    return match;
+}
+
+/* Returns whether a node that moved away from the ancestors that a path pattern names now belongs to another asset. */
+static bool has_left(struct asset_patterns *patterns, const char *pattern, uint32_t node)
+{
+    int other = patterns->pairs->to_new[node];
+    return other >= 0 && patterns->gained[other] && is_path(pattern, patterns->before->nodes[node].name) &&
+           has_other_ancestor(patterns, pattern, node) && !ancestors_match(patterns, pattern, (uint32_t)other);
+}
+
 /* Adds the patterns that match, in the new model, the counterparts of all nodes that `pattern` matches in the old model: the pattern
  * itself if it still matches a node, and an exact pattern for each counterpart that it no longer matches. Does not add nodes that
- * have moved out of an asset's path pattern, because another asset's pattern may match them now. */
-static void follow_several(struct asset_patterns *patterns, const char *pattern, size_t old_count, const char *sign, struct text *out)
+ * have left an asset for another one. */
+static void follow_several(struct asset_patterns *patterns, const char *pattern, const char *sign, struct text *out)
 {
+    size_t old_count = find(patterns, patterns->before, patterns->old_names, pattern);
     uint32_t *olds = mem_array(old_count, sizeof(*olds));
     bool *matched = mem_array(patterns->after->count + 1, sizeof(*matched));
     memcpy(olds, patterns->found, old_count * sizeof(*olds));
@@ -163,7 +217,7 @@ static void follow_several(struct asset_patterns *patterns, const char *pattern,
         add_line(out, sign, pattern);
     for (size_t i = 0; i < old_count; i++) {
         int other = patterns->pairs->to_new[olds[i]];
-        if (other < 0 || matched[other] || (!*sign && has_moved(patterns, pattern, olds[i])))
+        if (other < 0 || matched[other] || (!*sign && has_left(patterns, pattern, olds[i])))
             continue;
         char *exact = exact_pattern(patterns, (uint32_t)other);
         add_line(out, sign, exact);
@@ -182,8 +236,8 @@ static char *follow_line(struct asset_patterns *patterns, const char *line)
     char *other = NULL;
     int node;
     size_t old_count = find(patterns, patterns->before, patterns->old_names, pattern);
-    if (old_count > 1 || (old_count == 1 && !*sign && has_moved(patterns, pattern, patterns->found[0]))) {
-        follow_several(patterns, pattern, old_count, sign, &out);
+    if (old_count > 1 || (old_count == 1 && !*sign && has_left(patterns, pattern, patterns->found[0]))) {
+        follow_several(patterns, pattern, sign, &out);
         return out.at;
     }
     enum asset_pattern_change change = asset_patterns_follow(patterns, pattern, NULL, &node, &other);

@@ -436,6 +436,9 @@ static bool plan_model(struct planning *p, const struct revision_model *model)
         p->covered = mem_array(news + 1, sizeof(bool));
         asset_patterns_init(&p->patterns, &p->states.before.outline.header, &p->states.after.outline.header, &p->states.pairs);
         for (size_t i = 0; i < plant->asset_count; i++)
+            if (is_of(&plant->assets[i], plant, model) && plant->assets[i].nodes)
+                asset_patterns_add_gained(&p->patterns, plant->assets[i].nodes);
+        for (size_t i = 0; i < plant->asset_count; i++)
             if (is_of(&plant->assets[i], plant, model))
                 plan_asset(p, i);
         add_new(p, model, like);
