@@ -271,7 +271,7 @@ async function main([input, output, , , , encoding]) {
         lines.slice(0, MAX_NAMED).join(', ')}${
         lines.length > MAX_NAMED ? ', ...' : ''}`.replace(/[\t\n]/g, ' ')] : [],
     ...lost, ...partlyLostLines(model, withoutPlace.map((element) => [element, geometry.unplaced.get(element).length]), incomplete),
-    ...wrongIndexLines(model, wrongFaces.filter((set) => !solids.failed.has(set))), ...openingLines(model, uncut), ...drawnInstead,
+    ...wrongIndexLines(model, webIfc.IFCPRODUCT, wrongFaces, solids), ...openingLines(model, uncut), ...drawnInstead,
     ...misplacedLines(model, types, isShown, solids.failed), ...errors.lines(model, solids), ''].join('\n'));
     if (drawn.size === 0)
         throw new Error(`the IFC file contains no surface${lost.length > 0 ? `: ${lost.length} elements have no triangles, such as ` +

@@ -38,7 +38,7 @@ export function collectErrors() {
     // returns the lines that the reader prints about the captured errors: records in the format that
     // preprocess/import/findings.h describes
     const lines = (model, solids) => {
-        const built = found.size > 0 ? [...solids.elements.values()].flatMap(({ parts }) => parts.map(({ item }) => item)) : [];
+        const built = found.size > 0 ? builtItems(solids) : [];
         const instead = reached(model, built), left = [...found].map(([text, ids]) =>
             [text, ids.filter((id) => !instead.has(id)), ids.length > 0]);
         return left.filter(([, ids, numbered]) => ids.length > 0 || !numbered).map(([text, ids]) =>
@@ -68,22 +68,33 @@ function itemsOf(model, shape) {
     return [...items];
 }
 
-// Returns the ids of the face sets of this type that have an index outside of their list of points. web-ifc does not check
+// Returns the ids of the face sets of this type that have an index outside their list of points. web-ifc does not check
 // indices, and reads whatever lies next to the points.
 export function wrongIndices(model, type) {
     const numbers = (value) => [value ?? []].flat(Infinity).map((one) => Number(one?.value ?? one));
     return [...model.ofType(type)].filter((id) => {
         const set = model.lineOnce(id), points = model.lineOnce(set?.Coordinates?.value)?.CoordList?.length ?? 0;
-        const table = numbers(set?.PnIndex), isWrong = (most) => (index) => !(index >= 1 && index <= most);
-        const faces = [set, ...[set?.Faces ?? []].flat().map(({ value }) => model.lineOnce(value))];
-        return table.some(isWrong(points)) || faces.some((face) =>
-            [...numbers(face?.CoordIndex), ...numbers(face?.InnerCoordIndices)].some(isWrong(table.length || points)));
+        const table = numbers(set?.PnIndex), isWrong = (index, most) => !(index >= 1 && index <= most);
+        const isLost = (index) => table.length > 0 ? isWrong(index, table.length) || isWrong(table[index - 1], points)
+            : isWrong(index, points);
+        const faces = [set, ...[set?.Faces ?? []].flat().filter(Boolean).map(({ value }) => model.lineOnce(value))];
+        return faces.some((face) => [...numbers(face?.CoordIndex), ...numbers(face?.InnerCoordIndices)].some(isLost));
     });
 }
 
-// Returns lines of the reader's output that name face sets with wrong indices. Format: error records of findings.h.
-export function wrongIndexLines(model, ids) {
-    return ids.length === 0 ? [] : [fields('error', ids.length, `a face has an index outside of the list of points: ${
+// Returns the items of the elements that Open CASCADE built.
+const builtItems = (solids) => [...solids.elements.values()].flatMap(({ parts }) => parts.map(({ item }) => item));
+
+// Returns lines of the reader's output that name the face sets with wrong indices that web-ifc draws. Leaves out those that Open
+// CASCADE built, and those in an item that it refused, because another line states the reason. Format: error records of findings.h.
+export function wrongIndexLines(model, product, sets, solids) {
+    if (sets.length === 0)
+        return [];
+    const shapes = [...model.ofType(product)].map((id) => model.line(id)?.Representation?.value).filter(Boolean);
+    const drawn = reached(model, shapes.flatMap((shape) => itemsOf(model, shape)));
+    const refused = [...solids.failed.keys()].filter((id) => !model.line(id)?.GlobalId);
+    const others = reached(model, [...builtItems(solids), ...refused]), ids = sets.filter((id) => drawn.has(id) && !others.has(id));
+    return ids.length === 0 ? [] : [fields('error', ids.length, `a face has an index outside the list of points: ${
         [...ids.slice(0, MAX_IDS).map((id) => `#${id} ${model.classOf(id)}`), ...ids.length > MAX_IDS ? ['...'] : []].join(', ')}`)];
 }
 
