@@ -125,6 +125,17 @@ test('parts of a compressed assembly are found; compressed parts are named as mi
     }
 }));
 
+test('a part is found by its exact name, although the main file has the same name in capitals', { skip }, () => withSamples((folder) => {
+    writeFileSync(join(folder, 'LINE.STP'), assembly(['line.stp']));
+    writeFileSync(join(folder, 'line.stp'), cone());
+    writeFileSync(join(folder, 'LOOP.STP'), assembly(['loop.stp', 'line.stp']));
+    for (const name of ['LINE.STP', 'LOOP.STP']) {
+        const { out, errors } = imported(folder, name);
+        assert.match(out, /1 parts in 1 places/);
+        assert.deepEqual(errors, [], out);
+    }
+}));
+
 // Imports one of the sample files. Returns the report's entry for the model, the area (m2) and size (m) of its triangles, the
 // exit status, and all printed text.
 function imported(folder, name) {

@@ -92,22 +92,25 @@ std::string base_name(const std::string &path)
     return path.substr(path.find_last_of("/\\") == std::string::npos ? 0 : path.find_last_of("/\\") + 1);
 }
 
-/* Finds an external file named in a STEP file in the model's folder, ignoring case, by the links that child_paths_link_beside()
- * made. Returns its path, or "" if there is none. */
+std::string real_path(const std::string &path)
+{
+    char *real = access(path.c_str(), R_OK) == 0 ? realpath(path.c_str(), nullptr) : nullptr;
+    const std::string out = real ? real : "";
+    free(real);
+    return out;
+}
+
+/* Finds an external file named in a STEP file in the model's folder by the links that child_paths_link_beside() made: first by its
+ * exact name, then ignoring case. Returns its path, or "" if there is none. */
 std::string find_beside(const preparing &p, const std::string &named)
 {
-    const std::string base = base_name(named);
-    if (lower(base) == lower(base_name(p.main)))
+    const std::string base = base_name(named), main = base_name(p.main);
+    if (base == main)
         return p.main;
-    for (const std::string &name : { base, lower(base) }) {
-        const std::string link = p.beside + name;
-        char *real = access(link.c_str(), R_OK) == 0 ? realpath(link.c_str(), nullptr) : nullptr;
-        const std::string path = real ? real : "";
-        free(real);
-        if (!path.empty())
-            return path;
-    }
-    return "";
+    std::string path = real_path(p.beside + base);
+    if (path.empty() && lower(base) != lower(main))
+        path = real_path(p.beside + lower(base));
+    return (path.empty() && lower(base) == lower(main)) || path == real_path(p.main) ? p.main : path;
 }
 
 /* Returns the name by which the copies refer to an external file, and adds the file to the list of files to copy. */
