@@ -191,24 +191,24 @@ static void compare_place(const struct asset_pair *pair, const struct pair_half 
     found->far_moved = found->moved_m > pair->tolerance_m;
 }
 
-static void close_moved(struct diff *diff)
+static void close_left(struct diff *diff)
 {
-    if (diff->moved)
-        half_close(diff->moved);
-    mem_free(diff->moved);
-    diff->moved = NULL;
+    if (diff->left_half)
+        half_close(diff->left_half);
+    mem_free(diff->left_half);
+    diff->left_half = NULL;
 }
 
 /* Returns the old revision of the asset from which a tag has moved to another asset. Keeps it open for the next tag. */
-static const struct pair_half *open_moved(struct diff *diff, struct diff_side_asset *asset)
+static const struct pair_half *open_left(struct diff *diff, struct diff_side_asset *asset)
 {
     char ignored[MODEL_WHY_BYTES];
-    if (diff->moved && diff->moved->asset == asset)
-        return diff->moved;
-    close_moved(diff);
-    diff->moved = mem_new(sizeof(*diff->moved));
-    half_open(diff, diff->moved, &diff->old_side, asset, ignored);
-    return diff->moved;
+    if (diff->left_half && diff->left_half->asset == asset)
+        return diff->left_half;
+    close_left(diff);
+    diff->left_half = mem_new(sizeof(*diff->left_half));
+    half_open(diff, diff->left_half, &diff->old_side, asset, ignored);
+    return diff->left_half;
 }
 
 struct placed_tag {                           /* a tag in both revisions */
@@ -232,7 +232,7 @@ static void compare_sensor(struct diff *diff, struct asset_pair *pair, const str
     bool was = placed->before;
     if (was) {
         found.old_asset = placed->from ? placed->from->id : NULL;
-        compare_place(pair, placed->from ? open_moved(diff, placed->from) : &pair->old_half, placed->before, place_m, surface_m, &found);
+        compare_place(pair, placed->from ? open_left(diff, placed->from) : &pair->old_half, placed->before, place_m, surface_m, &found);
         mem_grow(&diff->sensors, &diff->sensor_room, diff->sensor_count + 1, sizeof(*diff->sensors));
         diff->sensors[diff->sensor_count++] = found;
         was = !isnan(found.distance_m[0]);
@@ -251,8 +251,8 @@ static int by_old_asset(const void *a, const void *b)
     return !p->from || !q->from ? (p->from ? 1 : -1) : by_model(&p->from, &q->from);
 }
 
-/* Compares the sensors of an asset. Sensors that come from other assets are sorted by these assets, so that each asset is opened
- * only once. */
+/* Compares the sensors of an asset. Sensors that come from other assets are sorted by these assets, so that this call opens each
+ * old asset only once. The call for another asset opens the old assets again. */
 static void compare_sensors(struct diff *diff, struct asset_pair *pair)
 {
     struct placed_tag *placed = mem_array(diff->new_side.tag_count, sizeof(*placed));
@@ -370,7 +370,7 @@ static void compare_assets(struct diff *diff, double tolerance_m)
     for (size_t i = 0; i < now->asset_count; i++)
         compare_asset(diff, order[i], tolerance_m);
     mem_free(order);
-    close_moved(diff);
+    close_left(diff);
     for (size_t i = 0; i < diff->old_side.asset_count; i++)
         if (!find_asset(now, diff->old_side.assets[i].id))
             add_asset(diff, (struct diff_asset){ .id = diff->old_side.assets[i].id, .change = DIFF_REMOVED });

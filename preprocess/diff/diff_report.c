@@ -122,7 +122,7 @@ void diff_text(const struct diff *diff, FILE *out)
     assets_text(diff, out);
     sensors_text(diff, out);
     other_assets_text(diff, out);
-    names_text("Tags that are new", diff->tags_added, diff->added_count, out);
+    names_text("Sensors that are new", diff->tags_added, diff->added_count, out);
     names_text("Tags that are no longer in the tag list", diff->tags_removed, diff->removed_count, out);
     fprintf(out, "\n");
     for (size_t i = 0; i < diff->orphan_count; i++)
