@@ -197,6 +197,28 @@ test('a STEP file that states no unit of length is reported', { skip }, () => wi
     assert.deepEqual(imported(folder, 'line.stp').errors, [{ count: 1, text: `bare.stp: ${text}` }]);
     writeFileSync(join(folder, 'cone.stp'), cone());
     assert.deepEqual(imported(folder, 'cone.stp').errors, []);
+    // the assembly states its unit, its only part does not
+    writeFileSync(join(folder, 'part.stp'), cone().replace("(#26,#15),#10)", "(#26,#15),#19)").replace('ENDSEC;\nEND-ISO', `
+        #19=(GEOMETRIC_REPRESENTATION_CONTEXT(3)GLOBAL_UNIT_ASSIGNED_CONTEXT((#13,#14))REPRESENTATION_CONTEXT('',''));
+        #300=PRODUCT('Line','Line','',(#2)); #301=PRODUCT_DEFINITION_FORMATION('','',#300);
+        #302=PRODUCT_DEFINITION('','',#301,#5); #303=PRODUCT_DEFINITION_SHAPE('','',#302);
+        #304=SHAPE_DEFINITION_REPRESENTATION(#303,#305); #305=SHAPE_REPRESENTATION('',(#15),#10);
+        #306=NEXT_ASSEMBLY_USAGE_OCCURRENCE('1','Place','',#302,#202,$); #307=PRODUCT_DEFINITION_SHAPE('','',#306);
+        #308=(REPRESENTATION_RELATIONSHIP('','',#205,#305)REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION(#309)
+        SHAPE_REPRESENTATION_RELATIONSHIP()); #309=ITEM_DEFINED_TRANSFORMATION('','',#15,#15);
+        #310=CONTEXT_DEPENDENT_SHAPE_REPRESENTATION(#308,#307);
+        ENDSEC;\nEND-ISO`));
+    const part = imported(folder, 'part.stp');
+    assert.match(part.out, /1 parts in 1 places/);
+    assert.deepEqual(part.errors, [{ count: 1, text }]);
+    // inches, by a factor that is a MEASURE_WITH_UNIT
+    const inches = without(cone(), 12).replace('ENDSEC;\nEND-ISO', `#12=(CONVERSION_BASED_UNIT('INCH',#91)LENGTH_UNIT()NAMED_UNIT(#92));
+        #91=MEASURE_WITH_UNIT(LENGTH_MEASURE(25.4),#93); #92=DIMENSIONAL_EXPONENTS(1.,0.,0.,0.,0.,0.,0.);
+        #93=(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.));\nENDSEC;\nEND-ISO`);
+    writeFileSync(join(folder, 'inches.stp'), inches);
+    const large = imported(folder, 'inches.stp');
+    assert.ok(near(large.size, [0.0234 * 25.4, 0.0902 * 25.4, 0.0902 * 25.4]), JSON.stringify(large.size));
+    assert.deepEqual(large.errors, []);
 }));
 
 // Removes one statement of each kind from a STEP file. The import must report what is missing, or refuse the file with one

@@ -12,7 +12,13 @@
 #include <RWMesh_FaceIterator.hxx>
 #include <STEPCAFControl_ExternFile.hxx>
 #include <STEPCAFControl_Reader.hxx>
+#include <STEPConstruct_UnitContext.hxx>
 #include <Standard_Failure.hxx>
+#include <StepGeom_GeomRepContextAndGlobUnitAssCtxAndGlobUncertaintyAssCtx.hxx>
+#include <StepGeom_GeometricRepresentationContextAndGlobalUnitAssignedContext.hxx>
+#include <StepRepr_GlobalUnitAssignedContext.hxx>
+#include <StepShape_ShapeDimensionRepresentation.hxx>
+#include <StepShape_ShapeRepresentation.hxx>
 #include <TDF_LabelMap.hxx>
 #include <TDF_Tool.hxx>
 #include <TDataStd_Name.hxx>
@@ -302,18 +308,38 @@ bool has_ending(const char *path, const char *ending)
     return length > count && !strcasecmp(path + length - count, ending);
 }
 
-/* Returns the length units of a STEP file. Prints an error if a shape has none: Open CASCADE then takes it to be in millimetres.
- * named: name of the file for the error, or "". */
+/* Returns whether a shape's context states a unit of length. Reads the context as Open CASCADE's transfer does. */
+bool has_length_unit(const Handle(StepRepr_RepresentationContext) & context)
+{
+    Handle(StepRepr_GlobalUnitAssignedContext) units = Handle(StepRepr_GlobalUnitAssignedContext)::DownCast(context);
+    auto exact = Handle(StepGeom_GeomRepContextAndGlobUnitAssCtxAndGlobUncertaintyAssCtx)::DownCast(context);
+    auto plain = Handle(StepGeom_GeometricRepresentationContextAndGlobalUnitAssignedContext)::DownCast(context);
+    if (!exact.IsNull())
+        units = exact->GlobalUnitAssignedContext();
+    else if (!plain.IsNull())
+        units = plain->GlobalUnitAssignedContext();
+    STEPConstruct_UnitContext factors;
+    if (!units.IsNull())
+        factors.ComputeFactors(units);
+    return !units.IsNull() && factors.LengthDone();
+}
+
+/* Returns the length units of a STEP file's products at the top. Prints an error if the context of any shape states none: Open CASCADE
+ * then takes the shape to be in millimetres. named: name of the file for the error, or "". */
 std::string length_units(STEPControl_Reader *reader, const std::string &named)
 {
     TColStd_SequenceOfAsciiString lengths, angles, solid_angles;
     std::string units;
     reader->FileUnits(lengths, angles, solid_angles);
-    bool missing = lengths.IsEmpty();
-    for (int i = 1; i <= lengths.Length(); i++) {
-        missing = missing || lengths.Value(i).IsEmpty();
+    for (int i = 1; i <= lengths.Length(); i++)
         if (units.find(lengths.Value(i).ToCString()) == std::string::npos)
             units += (units.empty() ? "" : ", ") + std::string(lengths.Value(i).ToCString());
+    const Handle(Interface_InterfaceModel) &model = reader->WS()->Model();
+    bool missing = false;
+    for (int i = 1; i <= model->NbEntities() && !missing; i++) {
+        Handle(StepShape_ShapeRepresentation) shape = Handle(StepShape_ShapeRepresentation)::DownCast(model->Value(i));
+        missing = !shape.IsNull() && !shape->IsKind(STANDARD_TYPE(StepShape_ShapeDimensionRepresentation)) &&
+                  !has_length_unit(shape->ContextOfItems());
     }
     if (missing)
         printf("error\t1\t%sthe file states no unit of length for some or all shapes: assuming mm; if that is wrong, state the unit in "
