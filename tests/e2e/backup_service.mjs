@@ -213,12 +213,16 @@ test('models outside of the plant\'s folder are in a backup without secrets; oth
           from: /srv/step/LINE.STP
           from: /srv/packed/line.stp.gz" >>${ETC}/options
         mkdir /srv/step /srv/packed && cd /srv/step && echo step >LINE.STP && echo step >'Bolt 1.Step' && echo key >line.key
-        cd /srv/packed && echo packed >line.stp.gz && echo step >nut.stp`));
+        cd /srv/packed && echo packed >line.stp.gz && echo step >nut.stp
+        mkdir /srv/lib /srv/shared && echo step >/srv/lib/pin.stp && ln -s /srv/lib/pin.stp /srv/step/pin.stp
+        echo bin >/srv/shared/tank.bin
+        echo '{"buffers": [{"uri": "../../../srv/shared/tank.bin"}]}' >${ETC}/MODEL.GLTF`));
     ok(host.run('plantcast backup p1 --without-secrets -o /root/b'));
     const names = ok(host.run('tar --quoting-style=literal -tf /root/b/etc.tar')).split('\n');
     for (const name of ['Halle süd/Kessel 1.glb', 'Halle süd/b.gltf', 'Halle süd/teil 2.bin', 'tile.png', 'newest.glb', 'v2.glb'])
         assert.ok(names.includes(`srv/cad/${name}`), `${name} is not in ${names.join(', ')}`);
-    for (const name of ['step/LINE.STP', 'step/Bolt 1.Step', 'packed/line.stp.gz', 'packed/nut.stp'])
+    for (const name of ['step/LINE.STP', 'step/Bolt 1.Step', 'packed/line.stp.gz', 'packed/nut.stp', 'step/pin.stp', 'lib/pin.stp',
+        'shared/tank.bin'])
         assert.ok(names.includes(`srv/${name}`), `${name} is not in ${names.join(', ')}`);
     assert.ok(!names.includes('srv/step/line.key'));
     assert.ok(names.includes('srv/linked/c.glb') && !names.some((name) => /password|tokens|\.pem/.test(name)), names.join(', '));
