@@ -112,6 +112,7 @@ struct params_change {
     bool dark, strip;
     enum language language;
     enum directions_look directions;
+    bool light_of_plant; /* true: the message had `light: null`: the view gets the light of a new view */
     double light_dir[3];
     int environment;
     int selected_asset;

@@ -153,6 +153,11 @@ static bool parse_light(const json_t *o, struct params_change *out, struct messa
 {
     bool given;
     double *l = out->light_dir;
+    out->light_of_plant = json_is_null(json_object_get(o, "light"));
+    if (out->light_of_plant) {
+        out->given |= GIVEN_LIGHT;
+        return true;
+    }
     if (!may_vector(o, "light", l, &given, error))
         return false;
     if (!given)
@@ -229,7 +234,9 @@ static void apply_look(const struct scene *scene, const struct params_change *ch
         view->language = change->language;
     if (change->given & GIVEN_ARROWS)
         view->directions = change->directions;
-    if (change->given & GIVEN_LIGHT)
+    if ((change->given & GIVEN_LIGHT) && change->light_of_plant)
+        view_default_light(scene, view->light_dir);
+    else if (change->given & GIVEN_LIGHT)
         memcpy(view->light_dir, change->light_dir, sizeof(view->light_dir));
     if (change->given & GIVEN_ENVIRONMENT)
         view->environment = change->environment;

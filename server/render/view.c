@@ -11,7 +11,7 @@
 
 /* Default sun: late morning, over the viewer's shoulder, so that shapes read well and shadows stay short. The direction does not depend on
    the frame's aspect ratio, so that all sessions of a plant share one baked light set. */
-static void default_light(const struct scene *scene, double towards[3])
+void view_default_light(const struct scene *scene, double towards[3])
 {
     int up = scene->plant->up == AXIS_Y ? 1 : 2, a = 0, b = up == 1 ? 2 : 1;
     struct camera home;
@@ -68,7 +68,7 @@ void view_default(const struct scene *scene, int width_px, int height_px, struct
         field_params_set_show(plant, &view->field, plant->display.show == PLANT_SHOW_OPERATOR ? SHOW_OPERATOR : SHOW_VALUE);
         view_default_scale(scene, view);
     }
-    default_light(scene, view->light_dir);
+    view_default_light(scene, view->light_dir);
     visibility_start(plant, &view->visibility);
     view->environment = plant->display.environment_count > 0 ? 1 : 0;
 }

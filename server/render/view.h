@@ -83,6 +83,8 @@ struct view {
 /* Returns the unit of the shown values: the group's unit, or "m" for distances. */
 const char *view_unit(const struct plant *plant, const struct view *view);
 void view_default(const struct scene *scene, int width_px, int height_px, struct view *view);
+/* Writes the light_dir of a new view to `towards`. */
+void view_default_light(const struct scene *scene, double towards[3]);
 /* Sets the default scale for the quantity that the view shows: the group's range, isolines and logarithm, or those for
    distances or for differences from a baseline. */
 void view_default_scale(const struct scene *scene, struct view *view);

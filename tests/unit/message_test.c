@@ -140,6 +140,16 @@ TEST(what_is_left_out_stays)
     assert_true(isinf(view.field.reach_m));
 }
 
+TEST(a_light_of_null_is_that_of_a_new_view)
+{
+    struct view fresh, view;
+    view_default(small_scene(), 640, 360, &fresh);
+    view = changed(fresh, "{\"type\":\"params\",\"seq\":1,\"light\":[0,0,9]}");
+    assert_false(view_equal(&view, &fresh));
+    view = changed(view, "{\"type\":\"params\",\"seq\":2,\"light\":null}");
+    assert_true(view_equal(&view, &fresh));
+}
+
 TEST(a_new_group_brings_its_settings)
 {
     struct view view;

@@ -18,10 +18,11 @@ function greeted(role) {
 
 test('parameters missing from a saved view are those of its group, or of the plant', () => {
     const { session: one } = greeted('engineer'), [group, other] = one.model.groups;
-    one.setParams({ clip: { planes: [[0, 0, 1, 0]] }, strength: 2, hidden: ['x'], group: other.id });
+    one.setParams({ clip: { planes: [[0, 0, 1, 0]] }, strength: 2, hidden: ['x'], light: [0, 0, 1], group: other.id });
     const { params, camera } = viewOf(one, `group=${group.id}&look=flat`);
     assert.equal(params.look, 'flat');
-    assert.deepEqual([params.clip, params.split, params.selected, params.range, params.sensors], [null, null, null, null, null]);
+    const { clip, split, selected, range, sensors, light } = params;
+    assert.deepEqual([clip, split, selected, range, sensors, light], [null, null, null, null, null, null]);
     assert.equal(params.strength, 1);
     assert.deepEqual(params.hidden, one.model.start.hidden);
     assert.deepEqual(params.isolines, group.isolines);
@@ -70,7 +71,7 @@ test('a viewer\'s new view has no engineer-only parameters of the view before it
     const { session, say } = greeted('viewer'), { id } = session.group;
     const views = [{ id: 'saved', view: 'look=flat' }, { id: 'far', view: 'reach=1', fixed: true },
         { id: 'lost', view: 'group=x', wrong: 'x', fixed: true }, { id: 'then', view: 'at=1', fixed: true },
-        { id: 'change', view: 'show=difference&baseline=morning', fixed: true }, { id: 'lit', view: 'light=0,0,1', fixed: true },
+        { id: 'change', view: 'show=difference&baseline=morning', fixed: true },
         { id: 'half', view: 'split=show:difference', fixed: true }, { id: 'home', view: 'look=flat', fixed: true }];
     say({ type: 'views', list: views });
     assert.equal(newView(session, { group: id }).named, undefined, 'all parameters have their default values');

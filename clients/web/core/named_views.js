@@ -34,7 +34,7 @@ export function viewOf(session, text, id) {
     const { model } = session, { camera, params, tag } = readAddress(text), group = model.group(params.group) ?? model.groups[0];
     const show = params.show ?? model.plant.show ?? 'value';
     const plain = { ...session.ownOf(group), ...(group ? defaultsOf(session, group, show) : {}), show, arrows: 'arrows', look: 'default',
-        range: null, ramp_interval: 0, breaks: null, split: null, selected: null, clip: null, sensors: null };
+        range: null, ramp_interval: 0, breaks: null, light: null, split: null, selected: null, clip: null, sensors: null };
     if (show !== 'value') // isolines and scale of the group are for values
         Object.assign(plain, { isolines: [], scale: show === 'blind' ? 'log' : 'linear' });
     const all = { ...plain, ...params };
@@ -57,8 +57,8 @@ export function newView(session, { group, asset }) {
 // Returns true if the server can show a view of the plant file at present, and the view has the default values of all parameters that
 // newView() does not send. A difference needs a stored baseline, which may not exist.
 function hasDefaults({ fixed, wrong, view }) {
-    const { params, time } = readAddress(view);
-    return fixed && !wrong && !isEngineers(view) && !params.light && !time.atUs && !/show[=:]difference/.test(view);
+    const { time } = readAddress(view);
+    return fixed && !wrong && !isEngineers(view) && !time.atUs && !/show[=:]difference/.test(view);
 }
 
 // Returns true if a view has engineer-only parameters.
