@@ -238,6 +238,7 @@ struct message {
     struct size_request size;        /* messages hello and resize */
     struct codec_list codecs;        /* messages hello and codecs: codecs that the client can decode; empty: as in the resumed session */
     char named[NAMED_VIEW_ID_BYTES]; /* messages hello, look and params: id of a named view; empty: no view (only in hello and params) */
+    bool has_new_view;               /* message params: `named` is null: the parameters begin with those of a new view */
     struct camera camera;            /* messages camera and hello: the new camera */
     /* the client's sequence number of its message camera, ack, fit, pick or look; message hello: that of its camera */
     uint32_t seq;

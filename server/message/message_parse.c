@@ -37,7 +37,8 @@ static bool parse_camera(const struct plant *plant, const json_t *o, struct mess
 static bool parse_params(const struct plant *plant, const json_t *o, struct message *out, struct message_error *error)
 {
     uint32_t seq;
-    if (!need_seq(o, &seq, error) || !may_text(o, "named", out->named, sizeof(out->named), NULL, error) ||
+    out->has_new_view = json_is_null(json_object_get(o, "named"));
+    if (!need_seq(o, &seq, error) || (!out->has_new_view && !may_text(o, "named", out->named, sizeof(out->named), NULL, error)) ||
         !params_parse(plant, o, &out->params, error) || !split_parse(plant, o, &out->split, error))
         return false;
     out->params.seq = seq;

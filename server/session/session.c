@@ -83,6 +83,8 @@ static bool on_params(struct session *session, const struct message *message, st
     struct view view = session->view;
     if (message->named[0] && !session_look(session, message->named, &view, error))
         return false;
+    if (message->has_new_view)
+        session_look_new(session, &view);
     view.camera = session->view.camera;
     if (!session_apply_params(session, message, &view, error))
         return false;

@@ -80,6 +80,8 @@ void session_scope_end(struct session *session);
 /* Sets the view to the named view with this id, keeping the view's size. Returns false with *error if the token does not allow
    the named view, or it cannot be shown. */
 bool session_look(struct session *session, const char *id, struct view *view, struct message_error *error);
+/* Sets the view to a new view of the plant, keeping the view's size and backdrop. */
+void session_look_new(const struct session *session, struct view *view);
 /* Sets the view with this id, for a token that permits only some views; id "": the first view that the token allows. Closes the
    session if the view cannot be set. */
 bool session_scope_view(struct session *session, const char *id, struct view *view, struct message_error *error);

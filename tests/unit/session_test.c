@@ -988,6 +988,12 @@ CASE(a_viewer_opens_saved_views_and_keeps_no_baseline)
     say(f, "{\"type\":\"look\",\"seq\":3,\"named\":\"now\"}");
     expect_error(f, "bad_field");
     assert_true(f->session->view.field.power == 3);
+    const double power = f->context.plant->groups[0].power;
+    say(f, "{\"type\":\"params\",\"seq\":4,\"named\":null,\"backdrop\":\"dark\",\"look\":\"flat\"}");
+    const struct view *view = &f->session->view;
+    assert_true(power != 3 && view->field.power == power && view->look == LOOK_FLAT);
+    say(f, "{\"type\":\"params\",\"seq\":5,\"named\":\"own\"}");
+    assert_true(view->field.power == 3 && view->look == LOOK_DEFAULT && view->dark);
 }
 
 CASE(what_is_shown_is_confirmed)

@@ -28,8 +28,8 @@ function defaultsOf({ model }, group, show) {
 }
 
 // Returns { camera, params, tag } that turn any state of a session into the saved view. A view without a camera gets the home
-// camera, which shows the whole plant. id: id of the saved view. If the user is no engineer, params contain this id instead of
-// the engineer-only parameters, which the server then takes from the saved view.
+// camera, which shows the whole plant. If the user is no engineer, params contain no engineer-only parameters. The server then takes them
+// from the saved view `id`, or from a new view if there is no id.
 export function viewOf(session, text, id) {
     const { model } = session, { camera, params, tag } = readAddress(text), group = model.group(params.group) ?? model.groups[0];
     const show = params.show ?? model.plant.show ?? 'value';
@@ -38,27 +38,16 @@ export function viewOf(session, text, id) {
     if (show !== 'value') // isolines and scale of the group are for values
         Object.assign(plain, { isolines: [], scale: show === 'blind' ? 'log' : 'linear' });
     const all = { ...plain, ...params };
-    const sent = maySendAll(session.role) ? all : { ...withoutEngineers(all), ...(id ? { named: id } : {}) };
+    const sent = maySendAll(session.role) ? all : { ...withoutEngineers(all), named: id ?? null };
     const { width, height, pixel_ratio: ratio = 1 } = session.size;
     return { camera: camera ?? session.homeIn(width / ratio, height / ratio), params: sent, tag };
 }
 
 // Returns the parameters of a new view of a tag's group, in which the tag's equipment is visible. tag.group null: the group that is shown.
-// Users other than engineers cannot send default values of engineer-only parameters. Such users get these values from a view of the plant
-// file, see hasDefaults().
 export function newView(session, { group, asset }) {
     const id = group ?? session.params.group, { params } = viewOf(session, id ? `group=${encodeURIComponent(id)}` : '');
     const [hidden, ghost] = [params.hidden, params.ghost].map((ids) => ids.filter((one) => one !== asset));
-    const usual = maySendAll(session.role) || engineersOf(session) === null ? null
-        : session.views.find(hasDefaults);
-    return { ...params, hidden, ghost, ...(usual ? { named: usual.id } : {}) };
-}
-
-// Returns true if the server can show a view of the plant file at present, and the view has the default values of all parameters that
-// newView() does not send. A difference needs a stored baseline, which may not exist.
-function hasDefaults({ fixed, wrong, view }) {
-    const { time } = readAddress(view);
-    return fixed && !wrong && !isEngineers(view) && !time.atUs && !/show[=:]difference/.test(view);
+    return { ...params, hidden, ghost };
 }
 
 // Returns true if a view has engineer-only parameters.

@@ -34,6 +34,22 @@ const char *session_scope_find_view(const struct plant_services *services, enum 
     return address;
 }
 
+/* Replaces the contents of a view. Keeps its size, backdrop, sequence numbers and trial, and the past instant that the session shows. */
+static void replace_view(struct view *view, const struct view *by)
+{
+    const struct view before = *view;
+    *view = *by;
+    view->width_px = before.width_px;
+    view->height_px = before.height_px;
+    view->pixel_ratio = before.pixel_ratio;
+    view->camera_seq = before.camera_seq;
+    view->params_seq = before.params_seq;
+    view->tier = before.tier;
+    view->dark = before.dark;
+    view_set_instant(view, before.at_us, before.field.slot);
+    view_set_trial(view, before.field.trial);
+}
+
 /* Sets *view to a saved view, even one that the session may not see, but keeps the size of `view`. Returns false with *error if
    the view cannot be shown live. */
 static bool read_view(const struct session *session, const char *id, struct view *view, struct message_error *error)
@@ -50,16 +66,7 @@ static bool read_view(const struct session *session, const char *id, struct view
         message_fail(error, "bad_field", "named: view '%.48s' shows a past time, but a stream shows only the present", id);
         return false;
     }
-    const struct view before = *view;
-    *view = read;
-    view->width_px = before.width_px;
-    view->height_px = before.height_px;
-    view->pixel_ratio = before.pixel_ratio;
-    view->camera_seq = before.camera_seq;
-    view->params_seq = before.params_seq;
-    view->tier = before.tier;
-    view_set_instant(view, before.at_us, before.field.slot); /* keeps the past instant that the session shows */
-    view_set_trial(view, before.field.trial);
+    replace_view(view, &read);
     return true;
 }
 
@@ -69,6 +76,13 @@ bool session_look(struct session *session, const char *id, struct view *view, st
         return false;
     snprintf(session->scope.named, sizeof(session->scope.named), "%s", id);
     return true;
+}
+
+void session_look_new(const struct session *session, struct view *view)
+{
+    struct view fresh;
+    view_default(session->context->services->scene, view->width_px, view->height_px, &fresh);
+    replace_view(view, &fresh);
 }
 
 /* Returns the id of the plant file's first view that the token allows; NULL: none. */
