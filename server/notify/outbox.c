@@ -145,10 +145,6 @@ static void tell(struct outbox *outbox, struct episode *episode, const struct no
 static void advance(struct outbox *outbox, struct episode *episode, int64_t now_us)
 {
     const struct plant_notify *notify = outbox->plant->notify;
-    /* the alarm's episode begins in the future: the wall clock was set back after the episode began, so the episode is made to
-       begin now */
-    if (episode->began_us > now_us + OUTBOX_REPEAT_US)
-        episode->began_us = now_us;
     for (size_t i = 0; i < notify->rule_count; i++) {
         const struct notify_rule *rule = &notify->rules[i];
         while (episode->rules >> i & 1 && episode->steps[i] < rule->step_count &&
@@ -262,13 +258,39 @@ static void drop_alarms(struct outbox *outbox, struct recipient_box *box, size_t
     outbox->dirty = true;
 }
 
+static void replace_later(struct outbox *outbox, int64_t *time_us, int64_t latest_us, int64_t new_us)
+{
+    if (*time_us <= latest_us)
+        return;
+    *time_us = new_us;
+    outbox->dirty = true;
+}
+
+/* Corrects times that are in the future because the wall clock was set back. The other functions can then compare times with
+   now_us without regard to such a step. */
+static void correct_future(struct outbox *outbox, int64_t now_us)
+{
+    for (size_t i = 0; i < outbox->count; i++) {
+        struct episode *episode = &outbox->episodes[i];
+        replace_later(outbox, &episode->began_us, now_us + OUTBOX_REPEAT_US, now_us);
+        replace_later(outbox, &episode->cleared_us, now_us, now_us); /* Alertmanager would show the alert as active */
+    }
+    for (size_t i = 0; i < outbox->plant->notify->recipient_count; i++) {
+        struct recipient_box *box = &outbox->boxes[i];
+        replace_later(outbox, &box->since_us, now_us, 0);                /* the queued alarms are due */
+        replace_later(outbox, &box->sent_us, now_us, 0);                 /* no pause; Alertmanager gets all ended alarms again */
+        replace_later(outbox, &box->retry_us, now_us + RETRY_MAX_US, 0); /* the retry is due */
+        /* outbox_sent() copies the time of Alertmanager's message to sent_us, which is then set to 0 */
+        if (outbox->plant->notify->recipients[i].kind != NOTIFY_ALERTMANAGER)
+            replace_later(outbox, &box->batch_us, now_us, now_us);
+    }
+}
+
 void outbox_tick(struct outbox *outbox, int64_t now_us)
 {
+    correct_future(outbox, now_us);
     for (size_t i = outbox->count; i-- > 0;) {
         struct episode *episode = &outbox->episodes[i];
-        /* An end in the future means that the wall clock was set back. Alertmanager would show the alert as active. */
-        if (episode->cleared_us > now_us)
-            episode->cleared_us = now_us;
         if (!episode->ended_us)
             advance(outbox, episode, now_us);
         else if (episode->cleared_us && now_us - episode->cleared_us > FORGET_US)
@@ -279,11 +301,6 @@ void outbox_tick(struct outbox *outbox, int64_t now_us)
         /* a message to Alertmanager is never given up because of its age: each such message has the present state of all
            alarms, so it does not become outdated */
         bool keeps = outbox->plant->notify->recipients[i].kind == NOTIFY_ALERTMANAGER;
-        /* A message from the future means that the wall clock was set back. Its age would stay negative. */
-        if (!keeps && box->batch_us > now_us) {
-            box->batch_us = now_us;
-            outbox->dirty = true;
-        }
         if (!keeps && box->batch_count > 0 && box->attempts > 0 && now_us - box->batch_us > OUTBOX_KEEP_US)
             drop_alarms(outbox, box, 0);
     }
@@ -299,18 +316,10 @@ static int by_urgency(const void *pa, const void *pb)
     return a->raised_us != b->raised_us ? (a->raised_us < b->raised_us ? -1 : 1) : strcmp(a->name, b->name);
 }
 
-/* Returns true if enough time has passed since the oldest queued alarm was queued. A time in the future means that the wall
-   clock was set back since. */
+/* Returns true if enough time has passed since the oldest queued alarm was queued. */
 static bool is_gathered(const struct outbox *outbox, const struct recipient_box *box, int64_t now_us)
 {
-    return now_us - box->since_us >= (int64_t)(outbox->plant->notify->gather_s * (double)S) || now_us < box->since_us;
-}
-
-/* Returns true if the pause after a failed delivery is not over. A retry farther away than the longest pause means that the wall
-   clock was set back since: the retry is then due. */
-static bool is_before_retry(const struct recipient_box *box, int64_t now_us)
-{
-    return now_us < box->retry_us && box->retry_us - now_us <= RETRY_MAX_US;
+    return now_us - box->since_us >= (int64_t)(outbox->plant->notify->gather_s * (double)S);
 }
 
 static bool is_due(const struct outbox *outbox, const struct recipient_box *box, int64_t now_us)
@@ -319,7 +328,7 @@ static bool is_due(const struct outbox *outbox, const struct recipient_box *box,
     int best = ALARM_PRIORITIES + 1;
     for (size_t i = 0; i < box->waiting.count; i++)
         best = box->waiting.at[i].said.priority < best ? box->waiting.at[i].said.priority : best;
-    bool paused = box->sent_us && now_us >= box->sent_us && now_us - box->sent_us < (int64_t)(notify->pause_s * (double)S);
+    bool paused = box->sent_us && now_us - box->sent_us < (int64_t)(notify->pause_s * (double)S);
     return box->waiting.count > 0 && is_gathered(outbox, box, now_us) && (!paused || best < box->last_priority);
 }
 
@@ -386,15 +395,14 @@ static bool goes_to(const struct plant_notify *notify, const struct episode *epi
 static bool make_alerts(struct outbox *outbox, int recipient, int64_t now_us)
 {
     struct recipient_box *box = &outbox->boxes[recipient];
-    bool set_back = now_us < box->sent_us; /* the wall clock was set back after the last message */
-    bool due = (box->changed && is_gathered(outbox, box, now_us)) || now_us - box->sent_us >= OUTBOX_REFRESH_US || set_back;
-    if (!due || is_before_retry(box, now_us))
+    bool due = (box->changed && is_gathered(outbox, box, now_us)) || now_us - box->sent_us >= OUTBOX_REFRESH_US;
+    if (!due || now_us < box->retry_us)
         return false;
     free_batch(box);
     box->batch = mem_array(outbox->count + 1, sizeof(*box->batch));
     for (size_t i = 0; i < outbox->count; i++) {
         const struct episode *episode = &outbox->episodes[i];
-        if ((!episode->cleared_us || episode->cleared_us >= box->sent_us || set_back) && goes_to(outbox->plant->notify, episode, recipient))
+        if ((!episode->cleared_us || episode->cleared_us >= box->sent_us) && goes_to(outbox->plant->notify, episode, recipient))
             put_alert(episode, box);
     }
     box->batch_us = now_us;
@@ -409,12 +417,13 @@ static bool make_alerts(struct outbox *outbox, int recipient, int64_t now_us)
 bool outbox_next(struct outbox *outbox, int recipient, int64_t now_us, struct outbox_message *out)
 {
     struct recipient_box *box = &outbox->boxes[recipient];
+    correct_future(outbox, now_us);
     if (outbox->plant->notify->recipients[recipient].kind == NOTIFY_ALERTMANAGER) {
         if (!make_alerts(outbox, recipient, now_us))
             return false;
     } else if (box->batch_count == 0 && is_due(outbox, box, now_us)) {
         make_batch(outbox, recipient, now_us);
-    } else if (is_before_retry(box, now_us)) {
+    } else if (now_us < box->retry_us) {
         return false;
     }
     *out = (struct outbox_message){ .items = box->batch, .count = box->batch_count, .left_out = box->left_out, .made_us = box->batch_us };
