@@ -133,20 +133,18 @@ static void on_end(void *arg, int recipient, const char *why, bool is_refused, i
     struct notifier *notifier = arg;
     struct log *log = notifier->params.log;
     const char *id = recipient_of(notifier, recipient)->id;
-    /* an Alertmanager message is never shortened: each message must contain all active alarms */
-    is_refused = is_refused && recipient_of(notifier, recipient)->kind != NOTIFY_ALERTMANAGER;
     if (why) {
         counter_inc(notifier->counters[recipient].failed, 1);
-        if (is_refused) {
-            size_t left = outbox_refused(notifier->outbox, recipient, now_us());
-            if (left > 0)
-                log_err(log, "notify: %s refuses a message: %s; sending only the %zu most urgent alarms of the message", id, why, left);
-            else
-                log_err(log, "notify: %s refuses a message: %s; the message is dropped", id, why);
-        } else {
-            outbox_failed(notifier->outbox, recipient, now_us());
+        switch (outbox_failed(notifier->outbox, recipient, is_refused, now_us())) {
+        case OUTBOX_RETRIED:
             if (!notifier->failing[recipient])
                 log_err(log, "notify: %s cannot be reached: %s; messages are queued and sent later", id, why);
+            notifier->failing[recipient] = true;
+            break;
+        case OUTBOX_SHORTENED:
+            log_err(log, "notify: %s refuses a message: %s; sending only the %d most urgent alarms of the message", id, why, OUTBOX_SHORT);
+            break;
+        case OUTBOX_DROPPED: log_err(log, "notify: %s refuses a message: %s; the message is dropped", id, why); break;
         }
     } else {
         outbox_sent(notifier->outbox, recipient, now_us());
@@ -156,9 +154,8 @@ static void on_end(void *arg, int recipient, const char *why, bool is_refused, i
         counter_inc(notifier->counters[recipient].mailboxes, refused_mailboxes);
         if (notifier->failing[recipient])
             log_info(log, "notify: %s accepts messages again", id);
+        notifier->failing[recipient] = false;
     }
-    if (!is_refused)
-        notifier->failing[recipient] = why != NULL;
 }
 
 /* Sends all due messages. Saves the outbox before sending a message, so that a restarted daemon repeats the same message

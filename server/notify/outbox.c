@@ -2,7 +2,6 @@
 /* Decides which recipients are notified of which alarms and when, and queues the notifications. */
 #include "notify/outbox_impl.h"
 
-#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -96,6 +95,18 @@ static void remove_episode(struct outbox *outbox, size_t index)
 
 /* --- recipients ------------------------------------------------------------------------------------------------------------- */
 
+static struct outbox_item item_of(const struct episode *episode)
+{
+    return (struct outbox_item){ .name = mem_strdup(episode->name),
+                                 .tag = episode->tag,
+                                 .kind = episode->kind,
+                                 .priority = episode->priority,
+                                 .status = episode->status,
+                                 .value = episode->value,
+                                 .limit = episode->limit,
+                                 .raised_us = episode->raised_us };
+}
+
 static void queue_item(struct outbox *outbox, int recipient, const struct episode *episode, int step, int64_t now_us)
 {
     struct recipient_box *box = &outbox->boxes[recipient];
@@ -115,16 +126,9 @@ static void queue_item(struct outbox *outbox, int recipient, const struct episod
     if (box->waiting.count == 0)
         box->since_us = now_us;
     mem_grow(&box->waiting.at, &box->waiting.capacity, box->waiting.count + 1, sizeof(*box->waiting.at));
-    box->waiting.at[box->waiting.count++] = (struct queued_item){ { .name = mem_strdup(episode->name),
-                                                                    .tag = episode->tag,
-                                                                    .kind = episode->kind,
-                                                                    .priority = episode->priority,
-                                                                    .step = step,
-                                                                    .status = episode->status,
-                                                                    .value = episode->value,
-                                                                    .limit = episode->limit,
-                                                                    .raised_us = episode->raised_us },
-                                                                  index };
+    struct queued_item *item = &box->waiting.at[box->waiting.count++];
+    *item = (struct queued_item){ item_of(episode), index };
+    item->said.step = step;
     outbox->items++;
 }
 
@@ -368,19 +372,6 @@ static void make_batch(struct outbox *outbox, int recipient, int64_t now_us)
         free_batch(box);
 }
 
-static void put_alert(const struct episode *episode, struct recipient_box *box)
-{
-    box->batch[box->batch_count++] = (struct outbox_item){ .name = mem_strdup(episode->name),
-                                                           .tag = episode->tag,
-                                                           .kind = episode->kind,
-                                                           .priority = episode->priority,
-                                                           .status = episode->status,
-                                                           .value = episode->value,
-                                                           .limit = episode->limit,
-                                                           .raised_us = episode->raised_us,
-                                                           .ended_us = episode->cleared_us };
-}
-
 static bool goes_to(const struct plant_notify *notify, const struct episode *episode, int recipient)
 {
     for (size_t i = 0; i < notify->rule_count; i++)
@@ -402,8 +393,10 @@ static bool make_alerts(struct outbox *outbox, int recipient, int64_t now_us)
     box->batch = mem_array(outbox->count + 1, sizeof(*box->batch));
     for (size_t i = 0; i < outbox->count; i++) {
         const struct episode *episode = &outbox->episodes[i];
-        if ((!episode->cleared_us || episode->cleared_us >= box->sent_us) && goes_to(outbox->plant->notify, episode, recipient))
-            put_alert(episode, box);
+        if ((episode->cleared_us && episode->cleared_us < box->sent_us) || !goes_to(outbox->plant->notify, episode, recipient))
+            continue;
+        box->batch[box->batch_count] = item_of(episode);
+        box->batch[box->batch_count++].ended_us = episode->cleared_us;
     }
     box->batch_us = now_us;
     box->changed = false;
@@ -445,26 +438,24 @@ void outbox_sent(struct outbox *outbox, int recipient, int64_t now_us)
     outbox->dirty = true;
 }
 
-void outbox_failed(struct outbox *outbox, int recipient, int64_t now_us)
+enum outbox_failure outbox_failed(struct outbox *outbox, int recipient, bool is_refused, int64_t now_us)
 {
     struct recipient_box *box = &outbox->boxes[recipient];
+    bool alerts = outbox->plant->notify->recipients[recipient].kind == NOTIFY_ALERTMANAGER;
+    if (is_refused && !alerts) {
+        drop_alarms(outbox, box, box->batch_count > OUTBOX_SHORT ? OUTBOX_SHORT : 0);
+        make_id(outbox, recipient, now_us);
+        box->retry_us = 0;
+        return box->batch_count > 0 ? OUTBOX_SHORTENED : OUTBOX_DROPPED;
+    }
     int64_t wait_us = S << (box->attempts < 6 ? box->attempts : 6);
     box->attempts++;
     box->retry_us = now_us + (wait_us < RETRY_MAX_US ? wait_us : RETRY_MAX_US);
-    if (outbox->plant->notify->recipients[recipient].kind == NOTIFY_ALERTMANAGER) {
+    if (alerts) {
         free_batch(box);
         box->changed = true;
     }
-}
-
-size_t outbox_refused(struct outbox *outbox, int recipient, int64_t now_us)
-{
-    struct recipient_box *box = &outbox->boxes[recipient];
-    assert(outbox->plant->notify->recipients[recipient].kind != NOTIFY_ALERTMANAGER);
-    drop_alarms(outbox, box, box->batch_count > OUTBOX_SHORT ? OUTBOX_SHORT : 0);
-    make_id(outbox, recipient, now_us);
-    box->retry_us = 0;
-    return box->batch_count;
+    return OUTBOX_RETRIED;
 }
 
 struct outbox_counts outbox_counts(const struct outbox *outbox, int recipient)

@@ -10,7 +10,7 @@
 #include "plant/sections/notification.h"
 
 enum { OUTBOX_ITEMS = 5000 /* maximum number of queued alarms, of all recipients together */, OUTBOX_ID_BYTES = 40 };
-enum { OUTBOX_SHORT = 50 }; /* number of alarms that stay in a message that was refused, see outbox_refused() */
+enum { OUTBOX_SHORT = 50 }; /* number of alarms that stay in a message that was refused, see outbox_failed() */
 /* minimum time in microseconds between two notifications of an alarm that is raised repeatedly without being acknowledged */
 #define OUTBOX_REPEAT_US (600 * INT64_C(1000000))
 #define OUTBOX_KEEP_US (86400 * INT64_C(1000000)) /* age at which a message that could not be delivered is dropped, in microseconds */
@@ -57,11 +57,16 @@ void outbox_tick(struct outbox *outbox, int64_t now_us);
    its items until outbox_sent(). Call outbox_sent() or outbox_failed() with the result before the next call. */
 bool outbox_next(struct outbox *outbox, int recipient, int64_t now_us, struct outbox_message *out);
 void outbox_sent(struct outbox *outbox, int recipient, int64_t now_us);
-void outbox_failed(struct outbox *outbox, int recipient, int64_t now_us);
-/* Like outbox_failed(), for a message that the recipient's server refuses in this form, so that sending it again is useless. Drops all
-   but the OUTBOX_SHORT most urgent alarms of the message, which are due again at once with a new id; if the message has no more than
-   OUTBOX_SHORT alarms, drops all. Dropped alarms count as lost. Returns how many alarms are left. Not for Alertmanager recipients. */
-size_t outbox_refused(struct outbox *outbox, int recipient, int64_t now_us);
+
+enum outbox_failure {
+    OUTBOX_RETRIED,   /* the alarms are sent again after a pause */
+    OUTBOX_SHORTENED, /* the OUTBOX_SHORT most urgent alarms are due again at once with a new id; the others are dropped */
+    OUTBOX_DROPPED    /* all alarms of the message are dropped */
+};
+/* is_refused: the recipient's server refuses the message in this form, so that sending it again is useless. Such a message is
+   shortened, or dropped if it has no more than OUTBOX_SHORT alarms; dropped alarms count as lost. A message to Alertmanager is always
+   retried, because it must contain all active alarms. */
+enum outbox_failure outbox_failed(struct outbox *outbox, int recipient, bool is_refused, int64_t now_us);
 
 struct outbox_counts {
     int64_t waiting; /* number of alarms that wait to be sent to this recipient */

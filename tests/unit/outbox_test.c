@@ -238,7 +238,7 @@ CASE(an_outage_delays_and_does_not_multiply)
             continue;
         tries++;
         assert_int_equal(message.count, 1);
-        outbox_failed(f->outbox, OPS, T0 + s * S);
+        outbox_failed(f->outbox, OPS, false, T0 + s * S);
         if (tries % 8 == 0)
             restart(f);
     }
@@ -260,14 +260,14 @@ CASE(a_refused_message_is_shortened_and_then_dropped)
     assert_true(outbox_next(f->outbox, OPS, T0 + 4 * S, &message));
     assert_int_equal(message.count, 400);
     memcpy(id, message.id, sizeof(id));
-    assert_int_equal(outbox_refused(f->outbox, OPS, T0 + 4 * S), OUTBOX_SHORT);
+    assert_int_equal(outbox_failed(f->outbox, OPS, true, T0 + 4 * S), OUTBOX_SHORTENED);
     restart(f);
     assert_true(outbox_next(f->outbox, OPS, T0 + 4 * S, &message)); /* the shortened message is due at once */
     assert_int_equal(message.count, OUTBOX_SHORT);
     assert_int_equal(message.left_out, 400 - OUTBOX_SHORT);
     assert_int_equal(message.items[OUTBOX_SHORT - 1].priority, 1); /* the most urgent alarms stay */
     assert_string_not_equal(message.id, id);
-    assert_int_equal(outbox_refused(f->outbox, OPS, T0 + 5 * S), 0);
+    assert_int_equal(outbox_failed(f->outbox, OPS, true, T0 + 5 * S), OUTBOX_DROPPED);
     assert_int_equal(outbox_counts(f->outbox, OPS).waiting, 0);
     assert_int_equal(outbox_counts(f->outbox, OPS).lost, OUTBOX_SHORT); /* counted since the restart */
     put(f, 400, LOCAL, true, true, T0 + 6 * S, T0 + 6 * S);
@@ -285,7 +285,7 @@ CASE(what_waits_is_bounded_and_said)
     struct outbox_message message;
     put(f, 5999, LOCAL, true, true, T0, T0);
     assert_true(outbox_next(f->outbox, OPS, T0 + 3 * S, &message));
-    outbox_failed(f->outbox, OPS, T0 + 3 * S);
+    outbox_failed(f->outbox, OPS, false, T0 + 3 * S);
     for (int i = 0; i < 5998; i++)
         put(f, i, LOCAL, true, true, T0 + 4 * S, T0 + 4 * S);
     assert_int_equal(outbox_counts(f->outbox, OPS).waiting, OUTBOX_ITEMS);
@@ -297,7 +297,7 @@ CASE(what_waits_is_bounded_and_said)
     /* the delivery of this alarm fails for longer than OUTBOX_KEEP_US, so it must be dropped and counted as lost */
     put(f, 5998, LOCAL, true, true, T0 + 300 * S, T0 + 300 * S);
     assert_true(outbox_next(f->outbox, OPS, T0 + 303 * S, &message));
-    outbox_failed(f->outbox, OPS, T0 + 303 * S);
+    outbox_failed(f->outbox, OPS, false, T0 + 303 * S);
     outbox_tick(f->outbox, T0 + 303 * S + OUTBOX_KEEP_US + S);
     assert_int_equal(outbox_counts(f->outbox, OPS).waiting, 0);
     assert_int_equal(outbox_counts(f->outbox, OPS).lost, 1000);
@@ -401,8 +401,9 @@ CASE(alertmanager_gets_alerts_after_the_clock_was_set_back)
     load(f, "  - { id: all, to: am }\n");
     put(f, 0, LOCAL, true, true, T0, T0);
     assert_true(outbox_next(f->outbox, AM, T0 + 3 * S, &message));
-    outbox_failed(f->outbox, AM, T0 + 3 * S);
-    assert_false(outbox_next(f->outbox, AM, T0 + 3 * S, &message)); /* the retry is due 1 s later */
+    /* a message to Alertmanager is retried even if it is refused; the retry is due 1 s later */
+    assert_int_equal(outbox_failed(f->outbox, AM, true, T0 + 3 * S), OUTBOX_RETRIED);
+    assert_false(outbox_next(f->outbox, AM, T0 + 3 * S, &message));
     assert_int_equal(deliver(f, AM, before), 1);
     put(f, 1, LOCAL, true, true, before + 10 * S, before + 10 * S);
     assert_int_equal(deliver(f, AM, before + 13 * S), 2);
@@ -435,7 +436,7 @@ CASE(an_undeliverable_message_is_given_up_after_the_clock_was_set_back)
     load(f, "  - { id: all, to: ops }\n");
     put(f, 0, LOCAL, true, true, T0, T0);
     assert_true(outbox_next(f->outbox, OPS, T0 + 3 * S, &message));
-    outbox_failed(f->outbox, OPS, T0 + 4 * S);
+    outbox_failed(f->outbox, OPS, false, T0 + 4 * S);
     outbox_tick(f->outbox, before);
     restart(f);
     outbox_tick(f->outbox, before + 24 * 60 * MIN);
@@ -452,7 +453,7 @@ CASE(a_clock_that_jumps_ahead_loses_nothing_later)
     put(f, 0, LOCAL, true, true, T0, T0);
     assert_int_equal(deliver(f, OPS, T0 + 3 * S), 1);
     assert_true(outbox_next(f->outbox, AM, T0 + 3 * S, &message));
-    outbox_failed(f->outbox, AM, T0 + 4 * S);
+    outbox_failed(f->outbox, AM, false, T0 + 4 * S);
     assert_true(outbox_next(f->outbox, AM, T0 + 2 * MIN, &message));
     outbox_tick(f->outbox, later); /* while the message is being sent again, the clock jumps to `later` */
     put(f, 1, LOCAL, true, true, later, later);
