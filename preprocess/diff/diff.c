@@ -28,6 +28,7 @@ struct pair_half { /* an asset in one of the two revisions that are compared */
 
 struct asset_pair {
     struct pair_half old_half, new_half;
+    struct pair_half *former; /* old revision of the asset from which a tag last moved to another asset; asset NULL: none yet */
     struct diff_asset found;
     double tolerance_m, limit_m;
 };
@@ -151,6 +152,11 @@ static void compare_shapes(struct asset_pair *pair)
 
 /* --- its sensors ------------------------------------------------------------------------------------------------------------------ */
 
+static bool has_place(const struct diff_side_shape *shape, size_t column)
+{
+    return column < shape->sensor_count && !isnan(shape->places_m[column][0]);
+}
+
 /* Computes the position of sensor `column` of an asset and of the surface point nearest to it, in the plant frame. Returns the distance
  * between them, metres. */
 static double place_sensor(const struct pair_half *half, size_t column, double place_m[3], double surface_m[3])
@@ -183,7 +189,7 @@ static void compare_place(const struct asset_pair *pair, const struct pair_half 
 {
     double old_place_m[3], old_surface_m[3];
     found->moved_m = found->place_moved_m = found->distance_m[0] = NAN;
-    if (!old_half->tree || before->column >= old_half->shape.sensor_count || isnan(old_half->shape.places_m[before->column][0]))
+    if (!old_half->tree || !has_place(&old_half->shape, before->column))
         return;
     found->distance_m[0] = place_sensor(old_half, before->column, old_place_m, old_surface_m);
     found->moved_m = surface_moved(pair, place_m, old_surface_m, surface_m);
@@ -191,24 +197,16 @@ static void compare_place(const struct asset_pair *pair, const struct pair_half 
     found->far_moved = found->moved_m > pair->tolerance_m;
 }
 
-static void close_left(struct diff *diff)
-{
-    if (diff->left_half)
-        half_close(diff->left_half);
-    mem_free(diff->left_half);
-    diff->left_half = NULL;
-}
-
 /* Returns the old revision of the asset from which a tag has moved to another asset. Keeps it open for the next tag. */
-static const struct pair_half *open_left(struct diff *diff, struct diff_side_asset *asset)
+static const struct pair_half *open_former(struct diff *diff, struct pair_half *former, struct diff_side_asset *asset)
 {
     char ignored[MODEL_WHY_BYTES];
-    if (diff->left_half && diff->left_half->asset == asset)
-        return diff->left_half;
-    close_left(diff);
-    diff->left_half = mem_new(sizeof(*diff->left_half));
-    half_open(diff, diff->left_half, &diff->old_side, asset, ignored);
-    return diff->left_half;
+    if (former->asset == asset)
+        return former;
+    half_close(former);
+    *former = (struct pair_half){ 0 };
+    half_open(diff, former, &diff->old_side, asset, ignored);
+    return former;
 }
 
 struct placed_tag {                           /* a tag in both revisions */
@@ -221,7 +219,7 @@ static void compare_sensor(struct diff *diff, struct asset_pair *pair, const str
     const struct diff_side_tag *tag = placed->tag;
     const struct diff_side_shape *shape = &pair->new_half.shape;
     double place_m[3], surface_m[3];
-    if (tag->column >= shape->sensor_count || isnan(shape->places_m[tag->column][0])) {
+    if (!has_place(shape, tag->column)) {
         const char *why = tag->column < shape->sensor_count ? shape->whys[tag->column] : NULL;
         orphan(diff, tag->name, tag->asset,
                mem_strdup(why ? why : "the prepared file of the asset does not contain this sensor: run plantcast-prep again"));
@@ -232,7 +230,8 @@ static void compare_sensor(struct diff *diff, struct asset_pair *pair, const str
     bool was = placed->before;
     if (was) {
         found.old_asset = placed->from ? placed->from->id : NULL;
-        compare_place(pair, placed->from ? open_left(diff, placed->from) : &pair->old_half, placed->before, place_m, surface_m, &found);
+        compare_place(pair, placed->from ? open_former(diff, pair->former, placed->from) : &pair->old_half, placed->before, place_m,
+                      surface_m, &found);
         mem_grow(&diff->sensors, &diff->sensor_room, diff->sensor_count + 1, sizeof(*diff->sensors));
         diff->sensors[diff->sensor_count++] = found;
         was = !isnan(found.distance_m[0]);
@@ -320,39 +319,44 @@ static void lose_sensors(struct diff *diff, const char *id, const char *why)
     }
 }
 
-static void compare_asset(struct diff *diff, struct diff_side_asset *new_asset, double tolerance_m)
+/* Compares an asset that has a shape in the new revision. was: it also has one in the old revision. */
+static void compare_present(struct diff *diff, struct asset_pair *pair, bool was, double tolerance_m)
 {
-    struct asset_pair pair = { .found.id = new_asset->id };
+    double diagonal_m = diff_shape_diagonal(pair->new_half.tree);
+    pair->limit_m = prepare_far_m(diagonal_m);
+    pair->tolerance_m = tolerance_m > 0 ? tolerance_m : fmin(TOLERANCE_M, TOLERANCE_OF_SIZE * diagonal_m);
+    pair->found.tolerance_m = pair->tolerance_m;
+    pair->found.change = DIFF_ADDED;
+    pair->found.triangles[1] = pair->new_half.shape.index_count / 3;
+    if (was)
+        compare_shapes(pair);
+    compare_sensors(diff, pair);
+}
+
+static void compare_asset(struct diff *diff, struct pair_half *former, struct diff_side_asset *new_asset, double tolerance_m)
+{
+    struct asset_pair pair = { .former = former, .found.id = new_asset->id };
     struct diff_side_asset *old_asset = find_asset(&diff->old_side, new_asset->id);
     char why[MODEL_WHY_BYTES], old_why[MODEL_WHY_BYTES];
     bool was = old_asset && half_open(diff, &pair.old_half, &diff->old_side, old_asset, old_why);
     bool is = half_open(diff, &pair.new_half, &diff->new_side, new_asset, why);
     bool unreadable = pair.old_half.shape.unreadable || pair.new_half.shape.unreadable;
-    if (!is && !pair.new_half.shape.unreadable) {
+    if (is) {
+        compare_present(diff, &pair, was, tolerance_m);
+    } else if (!pair.new_half.shape.unreadable) {
         if (was)
             find_renamed(diff, &pair, new_asset, tolerance_m, why);
         lose_sensors(diff, new_asset->id, why);
-        pair.found.change = DIFF_REMOVED;
-        pair.found.why = unreadable ? NULL : mem_strdup(why);
-    } else if (is) {
-        double diagonal_m = diff_shape_diagonal(pair.new_half.tree);
-        pair.limit_m = prepare_far_m(diagonal_m);
-        pair.tolerance_m = tolerance_m > 0 ? tolerance_m : fmin(TOLERANCE_M, TOLERANCE_OF_SIZE * diagonal_m);
-        pair.found.tolerance_m = pair.tolerance_m;
-        pair.found.change = DIFF_ADDED;
-        pair.found.triangles[1] = pair.new_half.shape.index_count / 3;
-        if (was)
-            compare_shapes(&pair);
-        compare_sensors(diff, &pair);
     }
     if (unreadable) {
         pair.found.change = DIFF_UNKNOWN;
         pair.found.why = mem_strdup(pair.new_half.shape.unreadable ? why : old_why);
+    } else if (was && !is) {
+        pair.found.change = DIFF_REMOVED;
+        pair.found.why = mem_strdup(why);
     }
     if (was || is || unreadable)
         add_asset(diff, pair.found);
-    else
-        mem_free(pair.found.why);
     half_close(&pair.old_half);
     half_close(&pair.new_half);
 }
@@ -363,14 +367,15 @@ static void compare_asset(struct diff *diff, struct diff_side_asset *new_asset, 
 static void compare_assets(struct diff *diff, double tolerance_m)
 {
     const struct diff_side *now = &diff->new_side;
+    struct pair_half former = { 0 };
     struct diff_side_asset **order = mem_array(now->asset_count, sizeof(*order));
     for (size_t i = 0; i < now->asset_count; i++)
         order[i] = &now->assets[i];
     qsort(order, now->asset_count, sizeof(*order), by_model);
     for (size_t i = 0; i < now->asset_count; i++)
-        compare_asset(diff, order[i], tolerance_m);
+        compare_asset(diff, &former, order[i], tolerance_m);
     mem_free(order);
-    close_left(diff);
+    half_close(&former);
     for (size_t i = 0; i < diff->old_side.asset_count; i++)
         if (!find_asset(now, diff->old_side.assets[i].id))
             add_asset(diff, (struct diff_asset){ .id = diff->old_side.assets[i].id, .change = DIFF_REMOVED });

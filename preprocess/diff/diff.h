@@ -43,8 +43,7 @@ struct diff_orphan {
 };
 
 struct diff {
-    struct diag *diag;       /* receives an error for each asset with an unreadable file; belongs to the caller */
-    struct pair_half *left_half; /* old revision of the asset from which tags have moved to another asset; NULL: none yet */
+    struct diag *diag; /* receives an error for each asset with an unreadable file; belongs to the caller */
     struct diff_side old_side, new_side;
     struct diff_asset *assets;
     struct diff_sensor *sensors;
