@@ -3,6 +3,7 @@
 #include "preprocess/convert/convert.h"
 
 #include <errno.h>
+#include <glob.h>
 #include <inttypes.h>
 #include <jansson.h>
 #include <stdlib.h>
@@ -32,6 +33,28 @@ static bool add_hash(const char *path, const char *also, struct text *out)
     text_add(out, "%016" PRIx64, XXH3_64bits(bytes, size) ^ XXH3_64bits(also, strlen(also)));
     mem_free(bytes);
     return true;
+}
+
+/* Appends to `out` one hash of the names and contents of all files that match the glob(3) pattern `also`. Returns false with errno set
+ * if no file matches, or a file cannot be read. */
+static bool add_matching(const char *also, struct text *out)
+{
+    glob_t found = { 0 };
+    struct text all = { 0 };
+    bool good = glob(also, GLOB_MARK | GLOB_BRACE, NULL, &found) == 0;
+    for (size_t i = 0; good && i < found.gl_pathc; i++) {
+        const char *path = found.gl_pathv[i];
+        bool is_folder = path[strlen(path) - 1] == '/';
+        good = is_folder || add_hash(path, path, &all);
+    }
+    if (found.gl_pathc == 0 || (good && !all.at))
+        errno = ENOENT;
+    good = good && all.at;
+    if (good)
+        text_add(out, "%016" PRIx64, XXH3_64bits(all.at, strlen(all.at)));
+    text_finish(&all);
+    globfree(&found);
+    return good;
 }
 
 static bool is_made(const json_t *made, const struct plant_conversion *how, const char *input_hash)
@@ -99,9 +122,12 @@ static bool convert_one(const struct plant *plant, const struct plant_conversion
 {
     char why[CHILD_WHY_BYTES];
     struct text from = { 0 }, to = { 0 };
-    bool good = add_hash(how->from, how->command, &from);
-    if (!good) {
-        diag_error(diag, plant->files.path, how->line, 0, "convert: '%s' cannot be read: %s", how->from, strerror(errno));
+    const char *unread = !add_hash(how->from, how->command, &from)      ? how->from
+                         : how->also && !add_matching(how->also, &from) ? how->also
+                                                                        : NULL;
+    bool good = !unread;
+    if (unread) {
+        diag_error(diag, plant->files.path, how->line, 0, "convert: '%s' cannot be read: %s", unread, strerror(errno));
     } else if (!is_made(made, how, from.at)) {
         fprintf(progress, "plantcast-prep: creating %s from %s\n", how->model, how->from);
         good = make(how, why) && add_hash(how->model, "", &to);

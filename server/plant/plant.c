@@ -204,6 +204,7 @@ void plant_destroy(struct plant **plant_ptr)
         mem_free(plant->conversions[i].model);
         mem_free(plant->conversions[i].from);
         mem_free(plant->conversions[i].command);
+        mem_free(plant->conversions[i].also);
     }
     mem_free(plant->conversions);
     mem_free(plant->history.folder);

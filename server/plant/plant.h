@@ -396,6 +396,7 @@ struct plant_link { /* template of a link to another system's page about an asse
 struct plant_conversion { /* conversion by which plantcast-prep makes a model: it runs another program, which writes a glTF file */
     char *model;          /* path of the glTF file that the program must write */
     char *from, *command; /* input file, and the command */
+    char *also;           /* glob(3) pattern of further input files; NULL: none */
     double timeout_s;
     int line;
 };

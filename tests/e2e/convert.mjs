@@ -2,7 +2,7 @@
 // The plant file's key `convert`: plantcast-prep has another program make the models.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { mkdirSync, mkdtempSync, readdirSync, readFileSync, renameSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
@@ -59,6 +59,29 @@ test('plantcast-prep converts a model again only when its input, its command or 
     assert.equal(readFileSync(join(folder, 'plate.glb'), 'utf8'), square(2));
     rmSync(join(folder, 'plate.glb'));
     makes('the model is gone', true, /1 unchanged/);
+}));
+
+test('a model is converted again when a file that `also` lists is added, changed or removed',
+    { skip }, () => withPlant(({ folder, write, prep }) => {
+    const part = (name) => join(folder, 'parts', name);
+    const runs = (made) => {
+        const { status, stderr } = prep();
+        assert.equal(status, 0, stderr);
+        assert.equal(/creating .*plate\.glb/.test(stderr), made);
+    };
+    write(COPY, ', also: "parts/{*.bin,*.mtl}"');
+    assert.match(prep().stderr, /plant\.yaml:3: error: convert: '.*\*\.mtl\}' cannot be read: No such file/);
+    mkdirSync(join(folder, 'parts'));
+    writeFileSync(part('a.bin'), 'a');
+    runs(true);
+    writeFileSync(part('a.txt'), 'no part');
+    runs(false);
+    for (const change of [() => writeFileSync(part('a.bin'), 'b'), () => writeFileSync(part('b.bin'), 'b'),
+        () => rmSync(part('b.bin')), () => renameSync(part('a.bin'), part('a.mtl'))]) {
+        change();
+        runs(true);
+        runs(false);
+    }
 }));
 
 test('a failed conversion prints one line and leaves the old model unchanged', { skip }, () => withPlant(({ folder, write, prep }) => {

@@ -21,6 +21,7 @@ void plant_conversions_read(struct yaml_reader *reader, yaml_node_t *node, struc
 {
     static const struct yaml_key keys[] = { { "model", KEY_NAME, true, offsetof(struct plant_conversion, model), 0, 0, NULL, NULL },
                                             { "from", KEY_NAME, true, offsetof(struct plant_conversion, from), 0, 0, NULL, NULL },
+                                            { "also", KEY_NAME, false, offsetof(struct plant_conversion, also), 0, 0, NULL, NULL },
                                             { "command", KEY_NAME, true, offsetof(struct plant_conversion, command), 0, 0, NULL, NULL },
                                             { "timeout_s", KEY_NUMBER, false, offsetof(struct plant_conversion, timeout_s), 1, 86400, NULL,
                                               NULL },
@@ -35,6 +36,7 @@ void plant_conversions_read(struct yaml_reader *reader, yaml_node_t *node, struc
         yaml_map_read(reader, item, "a conversion", keys, made, &map);
         plant_resolve_path(plant, &made->model);
         plant_resolve_path(plant, &made->from);
+        plant_resolve_path(plant, &made->also);
         check(reader, &map, plant, made);
     }
 }
