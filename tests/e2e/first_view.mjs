@@ -70,6 +70,7 @@ test('a notice names assets far outside the first view, and its button shows eve
     assert.equal(far.prepare().code, 0);
     assert.match(runProgram('plantcastd', ['--check', far.file]).err, /leaves out a part of asset STRAY at /);
     await far.startSim();
+    await far.set({ 'TI-1': 80, 'TI-2': 20, 'PI-1': 5 });
     await far.startDaemon();
     for (const [language, screen, title, all] of [
         ['en', SCREENS.desk, 'Outside the first view, up to 7012 km away: STRAY', 'Show everything'],

@@ -25,6 +25,7 @@ setUp(options.skip, async (own) => {
     plant.keepFresh();
     appendFileSync(plant.file, WALLS);
     await plant.start();
+    await plant.set({ 'TI-1': 80, 'TI-2': 20, 'PI-1': 5 });
 });
 
 const url = () => `http://127.0.0.1:${plant.port}/`;
@@ -57,6 +58,8 @@ test('the page of a tile whose clock is 5 s ahead shows each picture at the serv
         session.on('presented', ({ number }) => globalThis.shown.push({ number, at: Date.now() - 5000,
             off: session.pongs.reduce((least, { roundTripMs }) => Math.min(least, roundTripMs), Infinity) / 2 }));
     });
+    // the page estimates the server's clock from the answer to its first ping, which it sends 2 s after its start
+    await page.waitForFunction(() => globalThis.wall.panes[0].session.pongs.length > 0);
     let late = [];
     for (let seq = 1; late.length < 3; seq++) {
         leader.say(camera(seq, 1 + 0.02 * (seq % 50)));

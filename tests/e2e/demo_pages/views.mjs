@@ -201,6 +201,7 @@ test('the camera enters the tag\'s room; an asset close around the tag becomes a
     writeFileSync(tiny.file, text.replace('groups:', `  - { id: HOUSE, model: box.gltf, placement: { scale: 1.15 } }
   - { id: ROOM, model: box.gltf, placement: { translate: [3, 0, 0], scale: 2 } }\ngroups:`));
     await tiny.start();
+    await tiny.set({ 'TI-1': 80, 'TI-2': 20, 'PI-1': 5 });
     const own = await openPage(`http://127.0.0.1:${tiny.port}/`, { viewport: { width: 1200, height: 720 } }), on = own.page;
     const ghosts = (ids) => on.waitForFunction((all) => globalThis.plantcast.session.confirmed.ghost.join() === all, ids.join());
     try {

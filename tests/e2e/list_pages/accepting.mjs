@@ -43,6 +43,8 @@ setUp(skip, async (own) => {
     const prepared = plant.prepare();
     assert.equal(prepared.code, 0, prepared.err);
     await plant.startSim();
+    // fixed values: each change of a value would draw a new picture
+    await plant.set({ 'TI-1': 80, 'TI-2': 20, 'PI-1': 5, ...Object.fromEntries(Array.from({ length: ASSUMED }, (_, i) => [name(i), 50])) });
     await plant.startDaemon('--audit', join(plant.folder, 'audit.log'));
     browser = own(await openPage(`http://127.0.0.1:${plant.port}/?lang=en`, DESKTOP));
     page = browser.page;

@@ -34,7 +34,7 @@ function makeLarge(folder) {
             tags.push(`TI-${a}-${t},${400001 + 2 * n},Float,°C,point ${t},${placed.join(',')}`);
         }
     }
-    const file = join(folder, 'plant.yaml'), text = readFileSync(file, 'utf8').replace('poll_ms: 100', 'poll_ms: 2000');
+    const file = join(folder, 'plant.yaml'), text = readFileSync(file, 'utf8').replace('poll_ms: 100', 'poll_ms: 60000');
     writeFileSync(file, text.replace(/assets:\n(?: {2}- .*\n)+/, `assets:\n${assets.join('\n')}\n`) + LINKS);
     writeFileSync(join(folder, 'tags.csv'), `${tags.join('\n')}\n`);
 }

@@ -24,6 +24,7 @@ let plant;
 setUp(options.skip, async (own) => {
     plant = own(await TinyPlant.create());
     await plant.start();
+    await plant.set({ 'TI-1': 80, 'TI-2': 20, 'PI-1': 5 });
 });
 
 // Starts nginx, which serves the plant below /plantcast/. more: further configuration lines for that location; host: host name

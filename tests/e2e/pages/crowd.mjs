@@ -24,6 +24,8 @@ setUp(options.skip, async (own) => {
     const { code, err } = plant.prepare();
     assert.equal(code, 0, err);
     await plant.startSim();
+    // fixed values: each change of a value would draw a new picture
+    await plant.set({ 'TI-1': 80, 'TI-2': 20, 'PI-1': 5, ...Object.fromEntries(lines.map((_, i) => [`X-${i}`, 50])) });
     await plant.startDaemon();
     browser = own(await openPage(`http://127.0.0.1:${plant.port}/?lang=en`, { viewport: { width: 900, height: 700 } }));
 });

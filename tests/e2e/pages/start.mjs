@@ -36,6 +36,7 @@ test('a plant can start with hidden and ghosted assets; a user who shows all kee
         .replace('groups:', `  - { id: ${id}, model: box.gltf, start: ${how}, placement: { scale: 9 } }\ngroups:`));
     write('HOUSE', 'hidden');
     await tiny.start();
+    await tiny.set({ 'TI-1': 80, 'TI-2': 20, 'PI-1': 5 });
     const url = `http://127.0.0.1:${tiny.port}/`, own = await openPage(url, { viewport: { width: 1200, height: 720 } }), { page } = own;
     const sets = async () => page.evaluate(() => {
         const { hidden, isolate, ghost } = globalThis.plantcast.session.confirmed;

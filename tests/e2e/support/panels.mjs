@@ -5,8 +5,8 @@ import { join } from 'node:path';
 import { drawnAt, land } from './browser.mjs';
 import { TinyPlant } from './tiny_plant.mjs';
 
-// Returns [plant, url] of a running plant with active alarms. arrange(file): makes further changes to the plant file before the
-// start.
+// Returns [plant, url] of a running plant with active alarms. Its values are fixed, because each change would draw a new picture
+// on every open page. arrange(file): makes further changes to the plant file before the start.
 export async function startAlarmed(arrange = () => {}) {
     const plant = await TinyPlant.create();
     plant.keepFresh();
@@ -15,7 +15,7 @@ export async function startAlarmed(arrange = () => {}) {
     const tags = join(plant.folder, 'tags.csv');
     writeFileSync(tags, readFileSync(tags, 'utf8').split('\n').map((line, i) => line && line + (i === 0 ? ',H,HH' : ',60,90')).join('\n'));
     await plant.start();
-    await plant.tell('set TI-1 95.5');
+    await plant.set({ 'TI-1': 95.5, 'TI-2': 20, 'PI-1': 5 });
     return [plant, `http://127.0.0.1:${plant.port}/`];
 }
 
