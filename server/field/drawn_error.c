@@ -56,6 +56,7 @@ struct triangle_piece {  /* part of a triangle; the error is sampled at the midp
 struct sampler { /* working memory of one thread that samples triangles */
     const struct weights *of;
     const struct drawn_near *near; /* see struct drawn_error_job */
+    bool has_values;               /* see struct drawn_error_job */
     const struct asset_view *file;
     struct field_layout layout;
     struct layout_points points;
@@ -82,10 +83,13 @@ struct drawn_error_job {
     uint32_t first;       /* index of the first triangle whose interpolation error to measure */
     /* [n]: number of the level's triangles that need about n samples (samples_of()) */
     atomic_size_t needing[MAX_PIECES + 1];
-    bool has_border;      /* somewhere there is no data: sensors reach a limited distance, or a sensor is lost */
+    bool has_border; /* somewhere there is no data (has_border()) */
     /* samples only triangles at the border of the reach, because preparation left no error of values in the others. Preparation does
        not cut triangles in which only one sensor has weight, so a large one may show the border elsewhere */
     bool at_border_only;
+    /* false: the weights are not measured, only `near`, or the border of prepared weights' data: prepared weights are linear within
+       triangles by definition */
+    bool has_values;
     int most_pieces;      /* triangles that need more samples than this get a bound instead; MAX_PIECES: all are sampled */
     float *errors;        /* interpolation error of each triangle */
     float *ridges;        /* error of values in each triangle where paths from two sides meet; NULL: not measured */
@@ -109,9 +113,12 @@ static bool sampler_init(struct sampler *sampler, const struct drawn_error_job *
     sampler->points.corners = mem_array(KERNEL_BLOCK, sizeof(*sampler->points.corners));
     sampler->points.parts = mem_array(KERNEL_BLOCK, sizeof(*sampler->points.parts));
     sampler->points.away_m = mem_array(KERNEL_BLOCK, sizeof(*sampler->points.away_m));
-    sampler->weights = weights_create(&sampler->layout, job->params, job->radius_m, job->usable, &(struct weights_key){ 0 });
+    sampler->has_values = job->has_values;
+    sampler->weights = job->has_values
+                           ? weights_create(&sampler->layout, job->params, job->radius_m, job->usable, &(struct weights_key){ 0 })
+                           : weights_create_border(&sampler->layout, job->params, job->usable);
     sampler->terms = (struct weights_terms){ job->members, job->ones, job->members_marked, members };
-    if (sampler->near)
+    if (!sampler->has_values)
         return sampler->weights;
     sampler->corners = mem_try_array(members * 3 * GROUP, sizeof(float));
     return sampler->corners && sampler->weights && weights_keep(sampler->weights, weights_column_bytes(sampler->weights)) > 0;
@@ -133,9 +140,9 @@ static void sampler_finish(struct sampler *sampler)
 static void evaluate(struct sampler *sampler, size_t count)
 {
     struct weights *weights = sampler->weights;
-    weights->known[0] = sampler->near ? KNOWN_TOP : 0; /* only weights need `top` */
+    weights->known[0] = sampler->has_values ? 0 : KNOWN_TOP; /* only weights need `top` */
     weights_prepare(weights, 0, count);
-    if (sampler->near)
+    if (!sampler->has_values)
         return;
     memset(weights->kept, 0, weights->member_count);
     memset(sampler->values, 0, count * sizeof(*sampler->values));
@@ -151,7 +158,7 @@ static void evaluate_corners(struct sampler *sampler)
 {
     static const float at_corner[3][3] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } };
     size_t count = 3 * sampler->tri_count;
-    if (sampler->near)
+    if (!sampler->has_values)
         return;
     for (size_t j = 0; j < count; j++)
         layout_set_point(sampler->file, &sampler->points, j, sampler->tris[j / 3], at_corner[j % 3]);
@@ -219,7 +226,7 @@ static bool hides_rim(const struct sampler *sampler, size_t point, const struct 
 static void add_errors(struct sampler *sampler, const struct triangle_piece *pieces, size_t count)
 {
     float more[KERNEL_BLOCK] = { 0 }, less[KERNEL_BLOCK] = { 0 };
-    for (uint32_t m = 0; m < sampler->weights->member_count; m++) {
+    for (uint32_t m = 0; sampler->has_values && m < sampler->weights->member_count; m++) {
         const float *column = weights_column(sampler->weights, 0, m), *at = sampler->corners + m * 3 * GROUP;
         for (size_t j = 0; j < count; j++) {
             const float *corner = at + 3 * pieces[j].tri, *part = sampler->points.parts[j];
@@ -627,10 +634,16 @@ static bool loses_sensor(const struct weights *weights)
     return false;
 }
 
+/* Returns true if there is no data somewhere, because sensors reach a limited distance or a sensor is lost. */
+static bool has_border(const struct weights *weights)
+{
+    return weights->reach_m < INFINITY || loses_sensor(weights);
+}
+
 /* Measures the errors of interpolation, and those at ridges, in the triangles of one level of detail. */
 static void measure_triangles(struct drawn_error_job *job, const struct asset_level *level, struct workers *workers)
 {
-    job->has_border = job->weights->reach_m < INFINITY || loses_sensor(job->weights);
+    job->has_border = has_border(job->weights);
     memset(job->needing, 0, sizeof(job->needing));
     for_triangles(job, level, workers, GRAIN, count_samples);
     choose_sampled(job);
@@ -639,8 +652,8 @@ static void measure_triangles(struct drawn_error_job *job, const struct asset_le
         for_triangles(job, level, workers, RIDGE_GROUP, measure_ridges);
 }
 
-/* Measures all errors of one level of detail. resolved true: preparation left no interpolation error, so only the effect of
-   errors in distances, and the border of the reach, are measured. Returns false when out of memory. */
+/* Measures all errors of one level of detail, for weights that are not prepared. resolved true: preparation left no interpolation error,
+   so only the effect of errors in distances, and the border of the reach, are measured. Returns false when out of memory. */
 static bool measure_level(struct drawn_error_job *job, const struct asset_level *level, bool resolved, struct workers *workers)
 {
     struct weights *weights = job->weights;
@@ -681,6 +694,18 @@ static bool measure_level(struct drawn_error_job *job, const struct asset_level 
     mem_free(unmarked);
     mem_free(ones);
     return has_memory;
+}
+
+/* Measures the border of prepared weights' data in one level of detail. */
+static void measure_border(struct drawn_error_job *job, const struct asset_level *level, struct workers *workers)
+{
+    const struct asset_view *file = &job->weights->layout->file->view;
+    const size_t blocks = (level->vertex_count + KERNEL_BLOCK - 1) / KERNEL_BLOCK;
+    workers_for(workers, blocks, 4, prepare_some, job->weights);
+    job->at_border_only = true;
+    measure_triangles(job, level, workers);
+    /* the other errors of prepared weights are those that preparation measured */
+    raise_vertices(file, level, job->errors, 0, job->weights->errors);
 }
 
 /* Marks the whole asset, because memory ran out while its errors were measured. */
@@ -733,9 +758,9 @@ void drawn_error_measure(struct weights *weights, const struct field_params *par
     /* measures nothing if each pixel evaluates the field, because frames then do not interpolate within triangles */
     if (layout_is_exact(layout, weights->interpolation, weights->distance))
         return;
-    if (weights->prepared || layout->assumed || weights->member_count == 0 || is_constant(weights))
+    if (layout->assumed || weights->member_count == 0 || is_constant(weights) || (weights->prepared && !has_border(weights)))
         return;
-    const bool resolved = layout->file->resolved_levels & bit && in_range && is_as_prepared(weights, params);
+    const bool resolved = !weights->prepared && layout->file->resolved_levels & bit && in_range && is_as_prepared(weights, params);
     if (resolved && !amplifies_distances(weights) && !(weights->reach_m < INFINITY))
         return;
     if ((resolved ? weights->measured_levels : weights->sampled_levels) & bit)
@@ -748,10 +773,16 @@ void drawn_error_measure(struct weights *weights, const struct field_params *par
                                    .radius_m = weights->radius_m,
                                    .accepted = accepted_of(weights),
                                    .error_m = file->levels[number].error_m,
+                                   .has_values = !weights->prepared,
                                    .errors = mem_try_array(file->header->index_count / 3, sizeof(float)) };
     weights->errors = weights->errors ? weights->errors : mem_try_array(layout->vertex_count, sizeof(float));
     weights->errors_version++;
-    if (!job.errors || !weights->errors || !measure_level(&job, &file->levels[number], resolved, workers))
+    bool good = job.errors && weights->errors;
+    if (good && weights->prepared)
+        measure_border(&job, &file->levels[number], workers);
+    else
+        good = good && measure_level(&job, &file->levels[number], resolved, workers);
+    if (!good)
         mark_unknown(weights);
     mem_free(job.errors);
 }

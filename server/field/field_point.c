@@ -68,6 +68,19 @@ static bool is_blind_off(const struct field_state *state, const struct layout_po
     return false;
 }
 
+/* Finds out whether there is data at the point, for prepared weights: triangles may show data beyond the reach of the sensors. */
+static void point_border(const struct field_state *state, const struct layout_point *point, struct field_point *out)
+{
+    struct weights *weights = weights_create_border(&point->layout, &state->params, state->usable);
+    struct scalar at = { 0 };
+    if (!weights)
+        return;
+    weights_prepare(weights, 0, 1);
+    update_flags(state, weights, 0, 0, 0, &at);
+    out->no_data |= at.no_data > 0;
+    weights_destroy(&weights);
+}
+
 /* Sums the sensors' weights at the point, multiplied by the readings from which the scalars were computed, with the same
    arithmetic as at vertices. Returns the largest change of the value due to errors of distances, for these readings. */
 static double point_sum(const struct field_state *state, const struct layout_point *point, struct field_point *out)
@@ -135,7 +148,11 @@ bool field_at(struct field *field, int asset, const struct field_params *params,
         point_distance(state, &point, out);
         return true;
     }
-    const double of_distances = state->weights->prepared ? 0 : point_sum(state, &point, out);
+    double of_distances = 0;
+    if (state->weights->prepared)
+        point_border(state, &point, out);
+    else
+        of_distances = point_sum(state, &point, out);
     out->drawn_error = field_params_cover(params) ? 0 : error_near(state, place, of_distances);
     out->uncertain |= out->drawn_error > 0;
     return true;

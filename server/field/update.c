@@ -243,8 +243,7 @@ void update_flags(const struct field_state *state, const struct weights *weights
     at->uncertain = uncertain_of(marked, total, spread);
     at->lacking = weights_lacking_at(weights, vertex, filled);
     const float error = field_params_cover(&state->params) ? 0 : weights_error_at(weights, vertex);
-    if ((blind && weights_blind_off(weights, vertex)) || (double)error > state->error_limit ||
-        (error >= WEIGHTS_SHOWS_NO_DATA && !weights->prepared))
+    if ((blind && weights_blind_off(weights, vertex)) || (double)error > state->error_limit || error >= WEIGHTS_SHOWS_NO_DATA)
         at->uncertain = FLAG;
 }
 

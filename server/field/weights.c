@@ -224,6 +224,18 @@ error:
     return NULL;
 }
 
+struct weights *weights_create_border(const struct field_layout *layout, const struct field_params *params, const uint8_t *usable)
+{
+    struct field_params border = *params;
+    border.distance = field_params_distance(params);
+    if (interpolation_is_prepared(params->interpolation))
+        border.interpolation = INTERPOLATION_PAPER; /* `shepard` would leave out sensors of strength 0, which prepared weights use */
+    struct weights *weights = weights_create(layout, &border, 1, usable, &(struct weights_key){ 0 });
+    if (weights)
+        memset(weights->known, KNOWN_TOP, block_count(layout->vertex_count)); /* only weights need `top` */
+    return weights;
+}
+
 static bool same_sensors(const struct weights *a, const struct weights *b)
 {
     return a->layout == b->layout && a->distance == b->distance && a->reach_m == b->reach_m && a->member_count == b->member_count &&

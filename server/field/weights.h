@@ -36,9 +36,8 @@ struct weights_key { /* key of cached weights: the bytes of everything on which 
     uint64_t hash;
 };
 
-/* element of weights->errors of a triangle that shows data where the field has none, for weights that are not prepared; their
-   errors of values are smaller */
-#define WEIGHTS_SHOWS_NO_DATA 4.0f
+/* element of weights->errors of a triangle that shows data where the field has none */
+#define WEIGHTS_SHOWS_NO_DATA INFINITY
 #define STEP_OF_COLOR (1 / 255.0f) /* errors below a step of the 8-bit colour scale are not seen */
 
 enum { WEIGHTS_ERRING = 9 }; /* number of error thresholds for which area or vertices are counted: 1, 1/2, 1/4 ... 1/256 of the
@@ -95,7 +94,7 @@ struct weights {
     uint8_t *blind_marks;
     /* true: memory ran out while errors were measured, so every value may have any error */
     bool errors_unknown;
-    float largest_error; /* largest element of `errors`, without WEIGHTS_SHOWS_NO_DATA; 1 if errors_unknown */
+    float largest_error; /* largest element of `errors`; those that were measured count as at most 1; 1 if errors_unknown */
     /* erring[b]: fraction of the surface (for prepared interpolations: of the vertices) whose interpolation error is at least
        2^-b; the largest over all measured levels of detail */
     float erring[WEIGHTS_ERRING];
@@ -130,6 +129,9 @@ bool weights_key_equal(const struct weights_key *a, const struct weights_key *b)
    The caller destroys the weights. */
 struct weights *weights_create(const struct field_layout *layout, const struct field_params *params, float radius_m, const uint8_t *usable,
                                struct weights_key *key);
+/* Creates weights that only tell where there is data, at the points of a layout, even if the interpolation is prepared: weights_prepare()
+   fills near_m, place and lost. Returns NULL when out of memory. The caller destroys the weights. */
+struct weights *weights_create_border(const struct field_layout *layout, const struct field_params *params, const uint8_t *usable);
 /* Copies from other weights those computed arrays that are the same for both sets of parameters. While a user drags one
    parameter, these are most of the arrays. */
 void weights_copy_known(struct weights *weights, const struct weights *from);

@@ -896,6 +896,68 @@ CASE(test_a_body_without_sensors_leaves_the_errors_of_others)
     assert_true(before > 1 && fabs(after - before) < 0.01 * before);
 }
 
+enum { PLACES = 20000 };
+
+struct painted_tally { /* places beyond the reach, those that a picture or a pick shows as data, and unmarked places within the reach */
+    int beyond, painted, picked, within;
+};
+
+/* Compares random places in the triangles of the finest level with the distance from sensor 0. */
+static void tally_painted(struct plant_in_use *u, double reach_m, struct painted_tally *tally)
+{
+    const struct asset_view *view = &u->scene->assets[0].file->view;
+    for (int i = 0; i < PLACES; i++) {
+        double lacking = 0, uncertain = 0, at_m[2] = { view->header->origin_m[0], view->header->origin_m[1] };
+        struct field_place place = { .parts = { cad_random(&chance), cad_random(&chance) } };
+        struct field_point point;
+        uint32_t tri = (uint32_t)(cad_random(&chance) * (view->primitives[0].index_count / 3));
+        if (place.parts[0] + place.parts[1] > 1)
+            continue;
+        place.parts[2] = 1 - place.parts[0] - place.parts[1];
+        for (int k = 0; k < 3; k++) {
+            place.corners[k] = view->indices[3 * tri + (uint32_t)k];
+            for (int axis = 0; axis < 2; axis++)
+                at_m[axis] += place.parts[k] * (double)view->positions_m[place.corners[k]][axis];
+            lacking += place.parts[k] * (double)u->scalars->at[place.corners[k]].lacking;
+            uncertain += place.parts[k] * (double)u->scalars->at[place.corners[k]].uncertain;
+        }
+        assert_true(field_at(u->field, 0, &u->params, u->snapshot, &place, &point));
+        const double away_m = hypot(at_m[0] - place_of(0), at_m[1] - 0.05);
+        const bool is_shown = lacking <= 127.5 && uncertain <= 127.5, is_beyond = away_m > reach_m + 0.1;
+        tally->beyond += is_beyond;
+        tally->painted += is_beyond && is_shown;
+        tally->picked += is_beyond && !point.no_data;
+        tally->within += away_m < reach_m - 0.1 && is_shown;
+    }
+}
+
+/* Preparation does not cut the large triangles of a plate at the border of a lone sensor's reach. Beyond the border, pictures show no data,
+   or mark the triangle. Small triangles within the reach are not marked. */
+CASE(test_triangles_across_the_border_of_the_reach_are_marked)
+{
+    static const char *const keys[] = { ", interpolation: harmonic, disc_m: 0.05, reach_m: 1.2",
+                                        ", interpolation: fin, ambient: 20, disc_m: 0.05, reach_m: 1.2" };
+    for (int i = 0; i < 4; i++) {
+        const int cells = i % 2 ? 40 : 2;
+        struct painted_tally tally = { 0 };
+        struct cad_random random;
+        struct cad *cad = test_cad();
+        cad_random_start(&random);
+        cad_plate(cad, &random, cells, cells, STRIP_M, STRIP_M, 0);
+        maker_write_cad(c->folder, "model.glb", "plate", cad);
+        write_plant(c, ", thickness_m: 0.2", keys[i / 2], 1);
+        prep_case_expect(c, "$PLANT", 0);
+        struct plant_in_use *u = use_prepared(c);
+        look(u, 0);
+        tally_painted(u, 1.2, &tally);
+        print_message("%d cells: %d places beyond the reach, %d painted, %d picked; %d places within it are unmarked\n", cells * cells,
+                      tally.beyond, tally.painted, tally.picked, tally.within);
+        assert_true(tally.beyond > 1000 && (cells == 2 || tally.within > 50));
+        assert_int_equal(tally.painted, 0);
+        assert_int_equal(tally.picked, 0);
+    }
+}
+
 /* For an asset without sensors nothing is prepared, and no file is reported as missing. */
 CASE(test_without_sensors_no_file_is_missed)
 {
