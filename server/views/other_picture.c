@@ -47,9 +47,9 @@ static void read_name(const char *at, char out[OTHER_NAME_BYTES])
 
 bool other_picture_read_header(const char *header, struct other_picture *out)
 {
-    const char *age = value_of(header, "oldest_age_ms="), *name = value_of(header, "plant=");
+    const char *age = value_of(header, "oldest_age_ms="), *name = value_of(header, "plant="), *past = value_of(header, "past=");
     char *end = NULL;
-    *out = (struct other_picture){ .oldest_age_ms = -1 };
+    *out = (struct other_picture){ .oldest_age_ms = -1, .past = past && !strncmp(past, "yes", 3) };
     if (!age || !value_of(header, "data_time_us="))
         return false;
     if (name)

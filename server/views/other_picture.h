@@ -11,6 +11,7 @@ enum { OTHER_NAME_BYTES = 257 };
 struct other_picture {
     /* age of the oldest reading in the picture at the time when the picture was drawn; -1: the picture shows no readings */
     int64_t oldest_age_ms;
+    bool past;                   /* true: the picture shows a time in the past */
     char name[OTHER_NAME_BYTES]; /* name of the other plant; empty: its server states none */
 };
 

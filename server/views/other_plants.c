@@ -144,6 +144,9 @@ static enum why judge(struct other *other, struct other_picture *about, char sai
     } else if (!other_picture_read_header(other->header, about)) {
         snprintf(said, 160, "the answer has no header with the age of readings: the server is not a Plantcast server");
         why = WHY_NO_PICTURE;
+    } else if (about->past) {
+        snprintf(said, 160, "the picture shows a time in the past: remove `at` from view %s of that plant", plant->view ? plant->view : "");
+        why = WHY_NO_PICTURE;
     } else if (!other_picture_is_png((const uint8_t *)text, body->length, plant->width_px, plant->height_px)) {
         snprintf(said, 160, "the answer is not a PNG file of %d x %d", plant->width_px, plant->height_px);
         why = WHY_NO_PICTURE;

@@ -33,6 +33,7 @@ const MANNERS = {
     },
     large: (response) => response.writeHead(200, FRAME).end(Buffer.alloc(LARGE_BYTES)),
     page: (response) => response.writeHead(200, { 'content-type': 'text/html' }).end('<html>a log-in</html>'),
+    past: (response) => response.writeHead(200, { ...FRAME, 'plantcast-frame': `${FRAME['plantcast-frame']}, past=yes` }).end(picture),
     unsaid: (response) => response.writeHead(200, { 'content-type': 'image/png' }).end(picture),
     cut: (response) => response.writeHead(200, FRAME).end(picture.subarray(0, picture.length - 40)),
     small: (response) => response.writeHead(200, FRAME).end(small),
@@ -40,7 +41,7 @@ const MANNERS = {
     busy: (response) => response.writeHead(503, { 'retry-after': '5' }).end('too many pictures are being made\n'),
     shut: (response) => response.writeHead(401).end('a token is needed\n'),
 };
-const EXPECTED = { good: '', slow: 'slow', large: 'large', page: 'no_picture', unsaid: 'no_picture', cut: 'no_picture',
+const EXPECTED = { good: '', slow: 'slow', large: 'large', page: 'no_picture', past: 'no_picture', unsaid: 'no_picture', cut: 'no_picture',
     small: 'no_picture', elsewhere: 'no_picture', busy: 'busy', shut: 'refused', untrusted: 'tls', away: 'unreachable',
     tokenless: 'token', wrong: 'no_picture' };
 

@@ -21,6 +21,8 @@ TEST(headers_are_read)
     assert_true(other_picture_read_header("no_plant=b, an_oldest_age_ms=7, data_time_us=12, oldest_age_ms=250, plant=a", &about));
     assert_int_equal(about.oldest_age_ms, 250);
     assert_string_equal(about.name, "a");
+    assert_true(other_picture_read_header("data_time_us=12, oldest_age_ms=250, shows_readings=yes, past=yes", &about) && about.past);
+    assert_true(other_picture_read_header("data_time_us=12, oldest_age_ms=250, shows_readings=yes, past=no", &about) && !about.past);
     static const char *const none[] = { "", "oldest_age_ms=1", "data_time_us=1", "data_time_us=1, oldest_age_ms=x",
                                         "data_time_us=1, oldest_age_ms=-5", "data_time_us=1, oldest_age_ms=99999999999999999999999" };
     for (size_t i = 0; i < sizeof(none) / sizeof(none[0]); i++)
