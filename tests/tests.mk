@@ -24,7 +24,7 @@ test-long: test-deps
 	@PLANTCAST_BIN=$(bin) node --test tests/long/replay.mjs
 	@PLANTCAST_BIN=$(bin) USE_S=1800 node --test --test-name-pattern='memory' tests/e2e/list_pages/assets.mjs
 	@PLANTCAST_BIN=$(bin) USES=1440 MEMORY_MB=2048 node --test tests/e2e/memory.mjs
-	@PLANTCAST_BIN=$(bin) PLANTCAST_OUT=$(out) LOSSES=20 node --test tests/e2e/wall_losses.mjs
+	@PLANTCAST_BIN=$(bin) PLANTCAST_OUT=$(out) LOSSES=20 node --test tests/e2e/wall_pages/losses.mjs
 	@PLANTCAST_BIN=$(bin) PLANTCAST_OUT=$(out) LOSSES=20 node --test tests/e2e/gpu.mjs
 	@PLANTCAST_BIN=$(bin) VIDEO_S=600 node --test --test-name-pattern='every second' tests/e2e/video.mjs
 	@PLANTCAST_BIN=$(bin) PLANTCAST_OUT=$(out) HELD_S=600 node --test --test-name-pattern='two, ten and all' tests/e2e/wall_pictures.mjs
