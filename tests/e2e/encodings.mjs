@@ -9,6 +9,7 @@ import { join } from 'node:path';
 import { test } from 'node:test';
 import { DATA, inFolder } from './support/folders.mjs';
 import { ifc } from './support/ifc_sample.mjs';
+import { takes } from './support/sweep.mjs';
 import { BIN, notBuilt, TinyPlant } from './support/tiny_plant.mjs';
 
 const there = (name) => existsSync(join(BIN, name));
@@ -126,7 +127,11 @@ for (const [format, { needs, ending = format, make }] of Object.entries(FORMATS)
         !existsSync(SAMPLES) ? 'not built: step_samples' : false) }, (t) => inFolder((folder) => {
         let right = 0;
         const wrong = [];
-        for (const [name, [iconv, a, b]] of Object.entries(ENCODINGS)) {
+        // Each IFC file takes half a second of processor time. TextDecoder decodes these files, so a few encodings suffice, if it knows
+        // the names of all.
+        Object.keys(ENCODINGS).forEach((name) => new TextDecoder(name));
+        const tried = Object.entries(ENCODINGS).filter((_, i) => format !== 'ifc' || takes(0, i, 3));
+        for (const [name, [iconv, a, b]] of tried) {
             const file = join(folder, `m.${ending}`), plant = join(folder, name);
             writeFileSync(file, make(a, b, iconv, name));
             const said = plantcast('import', file, '-o', plant);
@@ -138,7 +143,7 @@ for (const [format, { needs, ending = format, make }] of Object.entries(FORMATS)
             if (!good)
                 wrong.push(`${name}: ${names.join(' | ')}\n${said.stdout}`);
         }
-        t.diagnostic(`${right} of ${Object.keys(ENCODINGS).length} encodings`);
+        t.diagnostic(`${right} of ${tried.length} encodings`);
         assert.deepEqual(wrong, []);
     }));
 

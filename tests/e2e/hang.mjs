@@ -27,11 +27,12 @@ walls:
     - { area: alarms, alarms: yes }
     - { area: trend, trend: [TI-1, TI-2], hours: 1 }
 `;
-let plant, display;
+let plant, display, kiosk; // kiosk: a page that fills the display
 
 setUp(why, async (own) => {
     plant = own(await startTiny(WALLS));
     display = own(await startDisplay(WIDTH, HEIGHT));
+    ({ page: kiosk } = own(await browserOn(display.name, `${plant.url}?wall=room&lang=en`, WIDTH, HEIGHT)));
 });
 
 // Waits until the watchdog's coloured band is visible on the display (wanted true) or has disappeared (false). Returns the
@@ -50,55 +51,45 @@ async function seesVeil(wanted) {
 // Blocks the page's main thread for ever.
 const hang = (page) => page.evaluate(() => { setTimeout(() => { for (;;); }); });
 
-// Like browserOn(), but closes the browser even if the page hangs.
-async function withPage(url, f) {
-    const { page, close } = await browserOn(display.name, url, WIDTH, HEIGHT);
-    try {
-        await f(page);
-    } finally {
-        await close();
-    }
-}
+test('a wall whose main thread hangs reports the hang, and shows the plant again by itself', options, async () => {
+    await kiosk.waitForURL(/wall\.html/);
+    await kiosk.waitForFunction(() => globalThis.wall?.session.model && document.querySelector('canvas.watches'));
+    await kiosk.waitForFunction(() => document.querySelector('.pane.views iframe')?.contentWindow.plantcast?.session.picture);
+    await kiosk.evaluate(() => { globalThis.wall.before = true; });
+    const again = kiosk.waitForEvent('load', { predicate: (one) => /wall\.html/.test(one.url()), timeout: PATIENCE_MS });
+    await hang(kiosk);
+    savePng(await seesVeil(true), join(SCREENSHOTS, 'hang-wall.png'));
+    await again;
+    await seesVeil(false);
+    await kiosk.waitForFunction(() => globalThis.wall?.session.model && !globalThis.wall.before);
+    await kiosk.waitForFunction(() => document.querySelector('.pane.views iframe')?.contentWindow.plantcast?.session.picture);
+    savePng(display.grab(), join(SCREENSHOTS, 'hang-wall-again.png'));
+    assert.match(kiosk.url(), /wall\.html\?wall=room&lang=en$/);
+});
 
-test('a wall whose main thread hangs reports the hang, and shows the plant again by itself', options, () =>
-    withPage(`${plant.url}?wall=room&lang=en`, async (page) => {
-        await page.waitForURL(/wall\.html/);
-        await page.waitForFunction(() => globalThis.wall?.session.model && document.querySelector('canvas.watches'));
-        await page.waitForFunction(() => document.querySelector('.pane.views iframe')?.contentWindow.plantcast?.session.picture);
-        await page.evaluate(() => { globalThis.wall.before = true; });
-        const again = page.waitForEvent('load', { predicate: (one) => /wall\.html/.test(one.url()), timeout: PATIENCE_MS });
-        await hang(page);
-        savePng(await seesVeil(true), join(SCREENSHOTS, 'hang-wall.png'));
-        await again;
-        await seesVeil(false);
-        await page.waitForFunction(() => globalThis.wall?.session.model && !globalThis.wall.before);
-        await page.waitForFunction(() => document.querySelector('.pane.views iframe')?.contentWindow.plantcast?.session.picture);
-        savePng(display.grab(), join(SCREENSHOTS, 'hang-wall-again.png'));
-        assert.match(page.url(), /wall\.html\?wall=room&lang=en$/);
-    }));
-
-test('a desk page that hangs reports the hang until it responds; the daemon logs that the page acknowledges nothing', options, () =>
-    withPage(`${plant.url}?lang=de`, async (page) => {
-        await waitForPicture(page);
-        await page.waitForFunction(() => document.querySelector('canvas.watches'));
-        let answer;
-        const released = new Promise((done) => { answer = done; });
-        await page.route('**/busy', async (route) => { await released; await route.fulfill({ body: '' }); });
-        await page.evaluate(() => { // blocks the page's main thread until the request is answered
-            setTimeout(() => {
-                const request = new XMLHttpRequest();
-                request.open('GET', '/busy', false);
-                request.send();
-            });
+test('a desk page that hangs reports the hang until it responds; the daemon logs that the page acknowledges nothing', options, async () => {
+    await kiosk.goto(`${plant.url}?lang=de`);
+    await waitForPicture(kiosk);
+    await kiosk.waitForFunction(() => document.querySelector('canvas.watches'));
+    let answer;
+    const released = new Promise((done) => { answer = done; });
+    await kiosk.route('**/busy', async (route) => { await released; await route.fulfill({ body: '' }); });
+    await kiosk.evaluate(() => { // blocks the page's main thread until the request is answered
+        setTimeout(() => {
+            const request = new XMLHttpRequest();
+            request.open('GET', '/busy', false);
+            request.send();
         });
-        const moving = setInterval(() => plant.ask(`set TI-1 ${20 + 30 * Math.random()}`).catch(() => {}), 500);
-        savePng(await seesVeil(true), join(SCREENSHOTS, 'hang-desk.png'));
-        await plant.logged(/session \d+ \(127\.0\.0\.1\): no picture acknowledged for 8 s/);
-        clearInterval(moving);
-        answer();
-        await seesVeil(false);
-        savePng(display.grab(), join(SCREENSHOTS, 'hang-desk-again.png'));
-    }));
+    });
+    const moving = setInterval(() => plant.ask(`set TI-1 ${20 + 30 * Math.random()}`).catch(() => {}), 500);
+    savePng(await seesVeil(true), join(SCREENSHOTS, 'hang-desk.png'));
+    await plant.logged(/session \d+ \(127\.0\.0\.1\): no picture acknowledged for 8 s/);
+    clearInterval(moving);
+    answer();
+    await seesVeil(false);
+    savePng(display.grab(), join(SCREENSHOTS, 'hang-desk-again.png'));
+    await kiosk.goto('about:blank'); // draws nothing during the next test
+});
 
 // Draws the alarm call-outs in the page (no selector), or in the panes of a wall (selector of their frames), after loading the
 // module for them. Never returns if the page hangs.

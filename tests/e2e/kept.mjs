@@ -15,6 +15,7 @@ import { until } from './support/nodes.mjs';
 import { PlainClient } from './support/plain_client.mjs';
 import { freePort } from './support/ports.mjs';
 import { setUp } from './support/set_up.mjs';
+import { sweep } from './support/sweep.mjs';
 import { missing, runProgram, TinyPlant } from './support/tiny_plant.mjs';
 
 const absent = missing();
@@ -335,12 +336,14 @@ test('while the disk hangs, each action is answered "not kept", and other client
     }
 });
 
-test('the page says in three languages that an action was not saved because the disk is full', options, async (t) => {
+test('the page says that an action was not saved because the disk is full', options, async (t) => {
     if (!mounted)
         return t.skip('this user may not mount a file system');
-    for (const [lang, words] of [['en', /Applied, but lost if the server restarts \(not saved: the server’s disk is full\)/],
-        ['ko', /서버를 다시 시작하면 사라집니다 \(저장되지 않음: 서버 디스크가 가득 찼습니다\)/],
-        ['de', /nach einem Neustart des Servers verloren \(nicht gespeichert: der Datenträger des Servers ist voll\)/]]) {
+    const toasts = [
+        ['de', /nach einem Neustart des Servers verloren \(nicht gespeichert: der Datenträger des Servers ist voll\)/],
+        ['en', /Applied, but lost if the server restarts \(not saved: the server’s disk is full\)/],
+        ['ko', /서버를 다시 시작하면 사라집니다 \(저장되지 않음: 서버 디스크가 가득 찼습니다\)/]];
+    for (const [lang, words] of toasts.slice(0, sweep(3, 1))) {
         const browser = await openPage(`http://127.0.0.1:${port}/?lang=${lang}`, { viewport: { width: 1280, height: 800 } });
         const { page } = browser;
         try {
