@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* HTTP requests to a daemon, with libwebsockets. */
+/* HTTP requests to a daemon, with libcurl. Its WebSocket clients use libwebsockets. */
 #include "daemon.h"
 
 #include <errno.h>
@@ -9,9 +9,10 @@
 
 #include "base/files/secret.h"
 #include "base/mem.h"
+#include "base/system/http_request.h"
 
-/* SILENCE_S: maximum time in seconds between two parts of an answer */
-enum { MAX_BODY_BYTES = 256 * 1024 * 1024, RECEIVE_BYTES = 16 * 1024, SILENCE_S = 60 };
+/* SILENCE_S: maximum time in seconds until the answer begins, and between two parts of an answer */
+enum { MAX_BODY_BYTES = 256 * 1024 * 1024, MAX_REDIRECTS = 5, SILENCE_S = 60 };
 
 /* Reads the access token from the first line of the --token-file. Returns false with the reason printed. */
 static bool read_token(struct daemon_access *access)
@@ -138,109 +139,54 @@ int daemon_add_token(const struct daemon_access *access, struct lws *wsi, void *
     return failed ? -1 : 0;
 }
 
-struct exchange {
-    const struct daemon_access *access;
-    int status;
-    bool done;
-    long long length; /* length of the body in bytes, as the answer states it; -1: the answer states none */
-    struct text *body;
-    size_t body_begin; /* number of bytes in `body` before the answer */
-    char why[200];
-};
-
-static void await_more(struct lws *wsi)
+/* Returns what made a request fail. status: HTTP status of its answer; 0: none arrived. */
+static const char *why_of(const struct http_request *request, CURLcode code, long status)
 {
-    lws_set_timer_usecs(wsi, SILENCE_S * LWS_US_PER_SEC);
+    if (status && code == CURLE_WRITE_ERROR)
+        return "the answer is too large";
+    if (status && code == CURLE_OPERATION_TIMEDOUT)
+        return "the answer is incomplete: the server has stopped sending";
+    if (status && code == CURLE_PARTIAL_FILE)
+        return "the answer is incomplete: the connection ended too early";
+    return http_request_why(request, code);
 }
 
-static void read_head(struct exchange *exchange, struct lws *wsi)
+static long send_request(struct http_request *request, const struct daemon_url *url, const char *address)
 {
-    char length[24] = "";
-    exchange->status = (int)lws_http_client_http_response(wsi);
-    exchange->length = lws_hdr_copy(wsi, length, sizeof(length), WSI_TOKEN_HTTP_CONTENT_LENGTH) > 0 ? strtoll(length, NULL, 10) : -1;
-    await_more(wsi);
-}
-
-/* Returns whether the body has the length that the answer states. An answer that states none, such as a chunked one, counts as whole. */
-static bool is_whole(const struct exchange *exchange)
-{
-    return exchange->length < 0 || exchange->body->length - exchange->body_begin == (size_t)exchange->length;
-}
-
-static int end_with(struct exchange *exchange, const char *why)
-{
-    snprintf(exchange->why, sizeof(exchange->why), "%s", why);
-    return -1;
-}
-
-static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in, size_t len)
-{
-    struct exchange *exchange = user;
-    char buffer[LWS_PRE + RECEIVE_BYTES], *at = buffer + LWS_PRE;
-    int room = RECEIVE_BYTES;
-    switch (reason) {
-    case LWS_CALLBACK_CLIENT_APPEND_HANDSHAKE_HEADER: return daemon_add_token(exchange->access, wsi, in, len);
-    case LWS_CALLBACK_CLIENT_CONNECTION_ERROR:
-        snprintf(exchange->why, sizeof(exchange->why), "%s", in ? (const char *)in : "no connection");
-        exchange->done = true;
-        break;
-    case LWS_CALLBACK_ESTABLISHED_CLIENT_HTTP: read_head(exchange, wsi); break;
-    case LWS_CALLBACK_TIMER: return end_with(exchange, "the answer is incomplete: the server has stopped sending");
-    /* lws_http_client_read() fills `buffer` with part of the response body and calls this function again with
-       LWS_CALLBACK_RECEIVE_CLIENT_HTTP_READ */
-    case LWS_CALLBACK_RECEIVE_CLIENT_HTTP:
-        return lws_http_client_read(wsi, &at, &room) < 0 ? -1 : 0;
-    case LWS_CALLBACK_RECEIVE_CLIENT_HTTP_READ:
-        if (exchange->body->length + len > MAX_BODY_BYTES)
-            return end_with(exchange, "the answer is too large");
-        text_add_bytes(exchange->body, in, len);
-        await_more(wsi);
-        break;
-    case LWS_CALLBACK_COMPLETED_CLIENT_HTTP:
-    case LWS_CALLBACK_CLOSED_CLIENT_HTTP: exchange->done = true; break;
-    default: break;
-    }
+    long status = 0;
+    CURL *handle = request->handle;
+    http_request_authorize(request, "", url->access->authorization[0] ? url->access->authorization : NULL);
+    curl_easy_setopt(handle, CURLOPT_URL, address);
+    curl_easy_setopt(handle, CURLOPT_HTTP_VERSION, (long)CURL_HTTP_VERSION_1_1);
+    curl_easy_setopt(handle, CURLOPT_FOLLOWLOCATION, 1L);
+    curl_easy_setopt(handle, CURLOPT_MAXREDIRS, (long)MAX_REDIRECTS);
+    curl_easy_setopt(handle, CURLOPT_CONNECTTIMEOUT, (long)SILENCE_S);
+    curl_easy_setopt(handle, CURLOPT_LOW_SPEED_LIMIT, 1L);
+    curl_easy_setopt(handle, CURLOPT_LOW_SPEED_TIME, (long)SILENCE_S);
+    CURLcode code = curl_easy_perform(handle);
+    curl_easy_getinfo(handle, CURLINFO_RESPONSE_CODE, &status);
+    if (code == CURLE_OK)
+        return status;
+    const char *why = why_of(request, code, status);
+    fprintf(stderr, "plantcast: %s: %s%s\n", address, why,
+            strstr(why, "SSL") ? "; pass the certificate of the daemon or of its authority with --ca FILE" : "");
     return 0;
 }
 
 int daemon_get(const struct daemon_url *url, const char *path, struct text *body)
 {
-    static const struct lws_protocols protocols[] = { { .name = "http", .callback = on_event }, { 0 } };
-    struct exchange exchange = { .access = url->access, .body = body, .body_begin = body->length };
-    struct lws_context_creation_info info = {
-        .port = CONTEXT_PORT_NO_LISTEN,
-        .protocols = protocols,
-        .gid = -1,
-        .uid = -1,
-        .timeout_secs = 70,
-    };
-    lws_set_log_level(0, NULL);
-    daemon_prepare_context(url, &info);
-    struct lws_context *context = lws_create_context(&info);
-    char *whole = mem_printf("%s%s", url->base, path);
-    struct lws_client_connect_info connect = {
-        .context = context,
-        .path = whole,
-        .method = "GET",
-        .userdata = &exchange,
-        .protocol = "http",
-    };
-    daemon_prepare_connection(url, &connect);
-    if (!context || !lws_client_connect_via_info(&connect))
-        exchange.done = true;
-    while (!exchange.done)
-        lws_service(context, 0);
-    if (exchange.status && (exchange.why[0] || !is_whole(&exchange))) {
-        if (!exchange.why[0])
-            end_with(&exchange, "the answer is incomplete: the connection ended too early");
-        exchange.status = 0;
-    }
-    if (!exchange.status)
-        fprintf(stderr, "plantcast: http%s://%s:%d%s: %s%s\n", url->tls ? "s" : "", url->host, url->port, whole,
-                exchange.why[0] ? exchange.why : "the server at this address does not answer",
-                strstr(exchange.why, "SSL") ? "; pass the certificate of the daemon or of its authority with --ca FILE" : "");
-    if (context)
-        lws_context_destroy(context);
-    mem_free(whole);
-    return exchange.status;
+    bool is_ipv6 = strchr(url->host, ':');
+    char *address = mem_printf("http%s://%s%s%s:%d%s%s", url->tls ? "s" : "", is_ipv6 ? "[" : "", url->host, is_ipv6 ? "]" : "", url->port,
+                               url->base, path);
+    struct http_request request = { .answer = *body, .most_bytes = body->length + MAX_BODY_BYTES };
+    long status = 0;
+    if (http_request_make(&request, "plantcast", url->access->ca_path))
+        status = send_request(&request, url, address);
+    else
+        fprintf(stderr, "plantcast: %s: out of memory\n", address);
+    *body = request.answer;
+    request.answer = (struct text){ 0 };
+    http_request_finish(&request);
+    mem_free(address);
+    return (int)status;
 }

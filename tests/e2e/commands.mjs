@@ -135,12 +135,12 @@ test('snapshot --view accepts views of the plant file and of the page, by id or 
         await refused(url, /HTTP status 401/, '--view', 'pump');
     });
 
-// Serves one answer: `head`, then 2000 bytes of a picture. Then closes the connection, unless `stalls`.
-async function serveCutOff(head, stalls = false) {
+// Serves one answer: `head`, `first`, then 2000 bytes of a picture. Then closes the connection, unless `stalls`.
+async function serveCutOff(head, first, stalls) {
     const server = createServer((client) => {
         client.on('error', () => {});
         client.once('data', () => {
-            client.write(`HTTP/1.1 200 OK\r\nContent-Type: image/png\r\n${head}\r\n`);
+            client.write(`HTTP/1.1 200 OK\r\nContent-Type: image/png\r\n${head}\r\n${first}`);
             client.write(Buffer.alloc(2000, 7), () => stalls || client.end());
         });
     }).listen(0, '127.0.0.1');
@@ -148,8 +148,8 @@ async function serveCutOff(head, stalls = false) {
     return server;
 }
 
-async function saveCutOff(t, head, stalls) {
-    const server = await serveCutOff(head, stalls), png = join(plant.folder, 'cut.png');
+async function saveCutOff(t, head, first = '', stalls = false) {
+    const server = await serveCutOff(head, first, stalls), png = join(plant.folder, 'cut.png');
     t.after(() => server.close());
     writeFileSync(png, 'the old picture');
     const { code, err } = await run('snapshot', `http://127.0.0.1:${server.address().port}/`, '-o', png);
@@ -162,12 +162,15 @@ test('snapshot leaves the old file if the answer is cut off; it accepts one that
         assert.equal(cut.code, 1);
         assert.match(cut.err, /the answer is incomplete/);
         assert.equal(String(cut.saved), 'the old picture');
+        const chunked = await saveCutOff(t, 'Transfer-Encoding: chunked\r\n', '7d0\r\n'); // the last chunk is missing
+        assert.deepEqual([chunked.code, String(chunked.saved)], [1, 'the old picture']);
+        assert.match(chunked.err, /the answer is incomplete/);
         const whole = await saveCutOff(t, 'Connection: close\r\n');
         assert.deepEqual([whole.code, whole.err, whole.saved.length], [0, '', 2000]);
     });
 
 test('snapshot ends if the server stops sending for a minute', { skip: skip || long, timeout: 150000 }, async (t) => {
-    const { code, err, saved } = await saveCutOff(t, 'Content-Length: 5000\r\n', true);
+    const { code, err, saved } = await saveCutOff(t, 'Content-Length: 5000\r\n', '', true);
     assert.deepEqual([code, String(saved)], [1, 'the old picture']);
     assert.match(err, /the server has stopped sending/);
 });
