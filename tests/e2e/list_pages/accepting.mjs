@@ -58,6 +58,14 @@ const says = (selector, text) => page.waitForFunction(([where, what]) =>
 const rows = () => readFileSync(tagsFile, 'utf8').split('\n').filter((row) => row.startsWith('TA-'));
 const assumed = () => rows().filter((row) => /equipment\r?$/.test(row)).length;
 
+test('legend and card say that the location of a tag is assumed', options, async () => {
+    await page.locator('.legend').getByText('Location assumed').waitFor();
+    const select = (tag) => page.evaluate((one) => globalThis.plantcast.selectTag(one && globalThis.plantcast.session.model.tag(one)), tag);
+    await select(name(1));
+    await page.locator('#card').getByText('Location assumed').waitFor();
+    await select(null);
+});
+
 test('the filter shows how many locations would be accepted and why others are not, and marks them on the model', options, async () => {
     const all = count((i) => !isNowhere(i));
     await says('#engineer .accept p', `${all} locations would be accepted`);
