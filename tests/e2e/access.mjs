@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tests the access control of a running daemon: TLS, tokens with roles, every way to send a token, and revocation. Foreign host
-// names and pages of other sites must be refused, also behind a proxy. The page must ask users for a token.
+// names and pages of other sites must be refused, also behind a proxy.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { chmodSync, copyFileSync, existsSync, readFileSync, unlinkSync, writeFileSync } from 'node:fs';
@@ -530,29 +530,4 @@ test('the daemon works behind nginx with the configuration from deploy/proxy',
     } finally {
         nginx.kill();
     }
-});
-
-test('the page asks a user for a token, then shows the plant', {
-    skip: skip || (existsSync(process.env.CHROMIUM ?? '/usr/bin/chromium') ? false : 'chromium is not installed'),
-}, async () => {
-    const { shoot, waitForPicture, withPage } = await import('./support/browser.mjs');
-    await behindProxy('--tokens', tokensFile);
-    await withPage(`http://localhost:${plant.port}/`, { viewport: { width: 1000, height: 700 } }, async (page) => {
-        await page.waitForSelector('#token[open]');
-        for (let i = 0; i < 3; i++)
-            // Escape does not close the token dialog, because without a token the page has nothing else to show
-            await page.keyboard.press('Escape');
-        await page.waitForSelector('#token[open]');
-        await page.fill('#token-text', 'pc_wrong');
-        await page.click('#token-form button');
-        await page.waitForFunction(() => /invalid/.test(document.getElementById('token-why').textContent));
-        await shoot(page, 'token');
-        await page.fill('#token-text', tokens.viewer);
-        await page.click('#token-form button');
-        await waitForPicture(page);
-        assert.equal(await page.evaluate(() => document.getElementById('token').open), false);
-        await page.reload();
-        await waitForPicture(page);
-        assert.ok(!(await page.evaluate(() => location.href)).includes('pc_'));
-    });
 });

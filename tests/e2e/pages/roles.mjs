@@ -41,10 +41,24 @@ setUp(skip, async () => {
     browsers = await Promise.all(Object.entries(SCREENS).map(async ([role, screen]) => {
         const browser = await openPage(`http://plant.example:${plant.port}/`, screen);
         pages[role] = browser.page;
-        await browser.page.locator('#token[open]').waitFor();
-        await browser.page.locator('#token-text').fill(tokens[role]);
-        await browser.page.locator('#token-form button').tap();
+        const dialog = browser.page.locator('#token[open]'), enter = async (token) => {
+            await browser.page.locator('#token-text').fill(token);
+            await browser.page.locator('#token-form button').tap();
+        };
+        await dialog.waitFor();
+        if (role === 'viewer') {
+            for (let i = 0; i < 3; i++)
+                // Escape does not close the token dialog, because without a token the page has nothing else to show
+                await browser.page.keyboard.press('Escape');
+            await dialog.waitFor();
+            await enter('pc_wrong');
+            await browser.page.locator('#token-why', { hasText: 'invalid' }).waitFor();
+            await shoot(browser.page, 'token');
+        }
+        await enter(tokens[role]);
         await waitForPicture(browser.page);
+        assert.equal(await dialog.count(), 0);
+        assert.ok(!browser.page.url().includes('pc_'));
         return browser;
     }));
 });
