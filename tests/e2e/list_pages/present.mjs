@@ -264,6 +264,11 @@ test('a refusal is shown in the reader\'s language, over the stream and over HTT
     await shoot(german.page, 'refused-de');
     await german.page.evaluate(() => globalThis.plantcast.session.setParams({ range: [1, -1] }));
     await waitForText(german.page, '#toast', '^Der Server hat abgelehnt: das Ende des Bereichs muss seinen Anfang um mindestens ');
+    await german.page.evaluate(async () => {
+        const { askFit } = await import('/core/requests.js');
+        askFit(globalThis.plantcast.session, { side: 'inside out' });
+    });
+    await waitForText(german.page, '#toast', '^Der Server hat abgelehnt: auf Englisch: „side:');
     const answer = await fetch(`${url}api/v1/history?tags=Ü-1&from=2026-01-01T00:00:00Z&to=2026-01-02T00:00:00Z`);
     assert.deepEqual(JSON.parse(answer.headers.get('plantcast-refusal')), { code: 'no_tag', args: { name: 'Ü-1' } });
     assert.equal(await answer.text(), 'tags: this plant has no tag “Ü-1”\n');

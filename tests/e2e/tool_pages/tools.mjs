@@ -373,20 +373,6 @@ test('parts of a link that this plant lacks are reported in the reader\'s langua
         });
 });
 
-test('a refusal by the server is shown in the reader\'s language', options, async () => {
-    const other = await openPage(`${url}?lang=ko`, SCREEN);
-    await waitForPicture(other.page);
-    await other.page.evaluate(() => globalThis.plantcast.session.setParams({ strength: 500 }));
-    await other.page.locator('#toast', { hasText: '서버가 거부했습니다: 0에서 100까지의 수가 필요합니다' }).waitFor();
-    await other.page.evaluate(async () => {
-        const { askFit } = await import('/core/requests.js');
-        askFit(globalThis.plantcast.session, { side: 'inside out' });
-    });
-    await other.page.locator('#toast', { hasText: '서버가 거부했습니다: 영어로 “side:' }).waitFor();
-    await shoot(other.page, 'refused-ko');
-    await other.close();
-});
-
 test('a leader may reload the page: the followers stay, and continue', options, async (t) => {
     const leader = await openPage(url, { viewport: { width: 900, height: 600 } });
     t.after(() => leader.close());
