@@ -6,6 +6,6 @@ import './support/browser.mjs';
 import './alarmed_pages/alarmed.mjs';
 
 describe('alarmed_pages', { concurrency: 2 }, () => {
-    for (const subject of ['accessible', 'room', 'words', 'walls'])
+    for (const subject of ['accessible', 'room', 'words', 'walls', 'truth'])
         describe(subject, { concurrency: 1 }, () => import(`./alarmed_pages/${subject}.mjs`));
 });

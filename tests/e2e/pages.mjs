@@ -6,7 +6,7 @@ import { describe } from 'node:test';
 import './support/browser.mjs';
 
 describe('pages', { concurrency: 2 }, () => {
-    for (const subject of ['tour', 'start', 'clip_gizmo', 'roles', 'named_views', 'arrows', 'crowd', 'drift', 'singles', 'handover',
+    for (const subject of ['tour', 'start', 'roles', 'named_views', 'arrows', 'crowd', 'drift', 'singles', 'handover',
         'first_tasks'])
         describe(subject, { concurrency: 1 }, () => import(`./pages/${subject}.mjs`));
 });
