@@ -3,9 +3,10 @@
 // version; also on a wall, legibly from afar.
 import assert from 'node:assert/strict';
 import { createHash, X509Certificate } from 'node:crypto';
-import { appendFileSync, readFileSync, writeFileSync } from 'node:fs';
+import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
+import { alarmed } from './alarmed.mjs';
 import { settle, shoot, TABLET, waitForHealth, waitForPicture, withPage } from '../support/browser.mjs';
 import { makeCertificate } from '../support/certificate.mjs';
 import { Relay, relayMissing } from '../support/relay.mjs';
@@ -19,15 +20,8 @@ const options = { skip: absent.length > 0 ? `not built: ${absent.join(', ')}` : 
 const SIZE = sweep({ width: 3840, height: 2160 }, { width: 1920, height: 1080 }), WALL = { viewport: SIZE, screen: SIZE };
 let plant, url;
 
-setUp(options.skip, async (own) => {
-    plant = own(await TinyPlant.create());
-    plant.keepFresh();
-    appendFileSync(plant.file, 'alarms: local\n');
-    const tags = join(plant.folder, 'tags.csv');
-    writeFileSync(tags, readFileSync(tags, 'utf8').split('\n').map((line, i) => line && line + (i === 0 ? ',H,HH' : ',60,90')).join('\n'));
-    await plant.start();
-    await plant.set({ 'TI-1': 95.5, 'TI-2': 20, 'PI-1': 5 });
-    url = `http://127.0.0.1:${plant.port}/`;
+setUp(options.skip, async () => {
+    [plant, url] = await alarmed();
 });
 
 const withPicture = (address, screen, f, init = null) => withPage(address, screen, async (page, browser) => {
