@@ -10,6 +10,8 @@ const screenOf = ({ width, height }) => ({ viewport: { width: 2 * width, height 
 // SMALL: for tests that do not judge where the eyes see something, because each frame of SCREEN takes 90 ms of processor time
 export const SCREEN = screenOf(EYE), SMALL = sweep(SCREEN, screenOf({ width: 320, height: 320 }));
 export const IPD_M = 0.063;
+// pause in milliseconds between two frames of the headset, which each take up to 90 ms of processor time
+const FRAME_MS = sweep(0, 60);
 const HEAD_M = 1.6; // height in metres of the emulated head above the floor of the user's room
 
 // Returns an init script that installs the headset, with a field of view of 90 degrees per eye.
@@ -18,6 +20,8 @@ export function headsetScript() {
     return { content: `${runtime};(() => {
         globalThis.device = new IWER.XRDevice(IWER.metaQuest3, { stereoEnabled: true, fovy: Math.PI / 2, ipd: ${IPD_M} });
         device.installRuntime({ forceInstall: true });
+        const { requestAnimationFrame: ask } = XRSession.prototype;
+        XRSession.prototype.requestAnimationFrame = function later(draw) { setTimeout(() => ask.call(this, draw), ${FRAME_MS}); };
     })();` };
 }
 
