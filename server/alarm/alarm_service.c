@@ -3,6 +3,7 @@
 #include "alarm/alarm_service.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdatomic.h>
 #include <string.h>
 #include <time.h>
@@ -67,15 +68,19 @@ static void on_sample(void *arg, const struct sample_event *event)
     pthread_mutex_unlock(&service->queue_lock);
 }
 
-static void on_change(void *arg, const struct alarm_change *change)
+static void add_row(struct alarm_service *service, const struct alarm_change *change, const char *unit)
 {
-    struct alarm_service *service = arg;
-    const char *unit = alarm_unit(service->alarms, change->alarm);
-    service->raised_now += change->event == ALARM_RAISE && alarm_status_is_annunciated(change->after);
     if (service->journal)
         journal_add(service->journal, change, change->alarm->name, unit);
     if (service->rows)
         service->rows[++service->row_count % MAX_ROWS] = journal_entry_of(change, change->alarm->name, unit);
+}
+
+static void on_change(void *arg, const struct alarm_change *change)
+{
+    struct alarm_service *service = arg;
+    service->raised_now += change->event == ALARM_RAISE && alarm_status_is_annunciated(change->after);
+    add_row(service, change, alarm_unit(service->alarms, change->alarm));
 }
 
 static void on_tag(void *arg, int tag, enum alarm_kind kind, enum alarm_status status)
@@ -249,10 +254,32 @@ static bool start_journal(struct alarm_service *service)
     return (service->journal = journal_start(&journal, service->alarms, now));
 }
 
+/* Adds a journal row for each alarm that was not normal before a reload and that the new plant does not have. */
+static void add_removed(struct alarm_service *service, const struct alarms *before)
+{
+    for (int i = alarms_newest(before); i >= 0; i = alarms_at(before, i)->older) {
+        struct alarm alarm = *alarms_at(before, i);
+        const struct alarm_change change = { .alarm = &alarm,
+                                             .event = ALARM_CLEAR,
+                                             .before = alarm_status_of(&alarm),
+                                             .after = ALARM_NORMAL,
+                                             .utc_ns = clock_utc_ns(),
+                                             .value = NAN,
+                                             .who = "",
+                                             .reason = "a reload removed this alarm" };
+        if (change.before == ALARM_NORMAL || alarms_find_named(service->alarms, alarm.name, alarm.kind) >= 0)
+            continue;
+        alarm.state = (struct alarm_state){ 0 };
+        add_row(service, &change, alarm_unit(before, &alarm));
+    }
+}
+
 static void adopt(struct alarm_service *service, struct alarm_service *before)
 {
     pthread_mutex_lock(&before->thread.lock);
     alarms_adopt(service->alarms, before->alarms);
+    if (!service->params.mirrors) /* the core that leads sends its rows to a core that mirrors it */
+        add_removed(service, before->alarms);
     memcpy(service->raised, before->raised, sizeof(service->raised));
     service->slot = before->slot;
     pthread_mutex_unlock(&before->thread.lock);

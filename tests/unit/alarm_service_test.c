@@ -171,6 +171,33 @@ CASE(while_nothing_was_recorded_no_alarm_is_known)
     history_reader_destroy(&reader);
 }
 
+CASE(an_alarm_that_a_reload_removes_is_cleared_in_the_journal)
+{
+    start(s);
+    give_all(s, 90);
+    assert_int_equal(wait_for(s, ALARM_UNACKNOWLEDGED, TAGS), TAGS);
+    struct alarm_service *before = s->alarm_service;
+    alarm_service_halt(before);
+    struct plant *plant = plant_by_hand_create(TAGS);
+    plant->alarms = ALARMS_LOCAL;
+    plant_by_hand_source(plant, "plc", 502);
+    for (int i = 0; i < TAGS; i++)
+        plant_by_hand_tag(plant, test_printf("T-%04d", i), TABLE_HOLDING, i, DATA_INT16)->alarms.limits[LIMIT_H] = i == 3 ? NAN : 80;
+    const struct alarm_service_params params = { .log = s->log,
+                                                 .counters = s->counters,
+                                                 .plant = plant,
+                                                 .store = test_store(plant),
+                                                 .folder = s->folder,
+                                                 .keep_days = 400,
+                                                 .before = before };
+    s->alarm_service = alarm_service_start(&params);
+    assert_non_null(s->alarm_service);
+    alarm_service_stop(&s->alarm_service);
+    alarm_service_stop(&before);
+    assert_int_equal(read_rows(s, NULL, 100000, INT64_MAX).count, TAGS + 1);
+    assert_string_equal(read_rows(s, "T-0003", 1, INT64_MAX).last, "T-0003 H clear normal 3 nan  a reload removed this alarm");
+}
+
 /* An alarm journalled one second before a kill survives it, and later transitions continue from that state. */
 CASE(killed_at_any_moment_it_goes_on)
 {
