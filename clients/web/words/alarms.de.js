@@ -49,21 +49,12 @@ title: {what} zurückstellen
 for: Dauer
 quarter: 15 Minuten
 hour: 1 Stunde
-shift: 8 Stunden
-day: 1 Tag
 reason: Grund
-cancel: Abbrechen
 do: Zurückstellen
 
 [short]
-active: Aktiv
-unacknowledged: Unquittiert
-acknowledged: Quittiert
 returned: Gegangen
-latched: Selbsthaltend
-shelved: Zurückgestellt
 suppressed: Unterdrückt
-out_of_service: Außer Betrieb
 
 [column]
 state: Zustand
@@ -128,6 +119,4 @@ late: {s} s danach
 now: Zeitpunkt des Alarms
 before: 30 s davor
 at: Zum Alarm
-play: Abspielen
-live: Zurück zu Live
 `;

@@ -49,21 +49,12 @@ title: Shelve {what}
 for: Duration
 quarter: 15 minutes
 hour: 1 hour
-shift: 8 hours
-day: 1 day
 reason: Reason
-cancel: Cancel
 do: Shelve
 
 [short]
-active: Active
-unacknowledged: Unacknowledged
-acknowledged: Acknowledged
 returned: Returned
-latched: Latched
-shelved: Shelved
 suppressed: Suppressed
-out_of_service: Out of service
 
 [column]
 state: State
@@ -128,6 +119,4 @@ late: {s} s after
 now: at the time of the alarm
 before: 30 s before
 at: Go to the alarm
-play: Play
-live: Back to live
 `;

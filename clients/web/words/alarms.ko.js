@@ -46,21 +46,12 @@ title: {what} 보류
 for: 기간
 quarter: 15분
 hour: 1시간
-shift: 8시간
-day: 1일
 reason: 사유
-cancel: 취소
 do: 보류
 
 [short]
-active: 활성
-unacknowledged: 미확인
-acknowledged: 확인됨
 returned: 복귀
-latched: 래치됨
-shelved: 보류
 suppressed: 억제
-out_of_service: 사용 중지
 
 [column]
 state: 상태
@@ -124,6 +115,4 @@ late: {s}초 후
 now: 발생 시점
 before: 30초 전
 at: 발생 시점으로
-play: 재생
-live: 실시간으로
 `;

@@ -2,7 +2,6 @@
 // Texts of the import panel, in German.
 export default `
 [import]
-close: Schließen
 drop: Modell und Messstellenliste hierher ziehen oder Dateien wählen
 more: Weitere Dateien hierher ziehen oder wählen
 formats: Modelle: RVM (mit ATT oder TXT), STEP, IGES, IFC, glTF, FBX, COLLADA, OBJ, STL, PLY, 3DS. Messstellen: CSV, XLSX, JSON
@@ -19,7 +18,6 @@ phase.matching: Messstellen werden zugeordnet …
 phase.preparing: Die Anlage wird vorbereitet …
 phase.loading: Die Anlage wird gezeichnet …
 done: Die Anlage ist aktiv
-cancel: Abbrechen
 again: Noch einmal lesen
 details: Bericht
 size: Größe
@@ -82,7 +80,6 @@ keys: ↑ ↓ durchgehen · 1–8 Vorschlag wählen · Enter annehmen · A alle 
 byhand: von Hand
 decided(one): {count} Entscheidung
 decided(other): {count} Entscheidungen
-save: Speichern
 undo: Verwerfen
 selected: Am gewählten Anlagenteil: {asset}
 alike: Alle {count} passend zu {pattern} annehmen

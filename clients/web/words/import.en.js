@@ -2,7 +2,6 @@
 // Texts of the import panel, in English.
 export default `
 [import]
-close: Close
 drop: Drop a model and a tag list here, or choose files
 more: Drop or choose more files
 formats: Models: RVM (with ATT or TXT), STEP, IGES, IFC, glTF, FBX, COLLADA, OBJ, STL, PLY, 3DS. Tags: CSV, XLSX, JSON
@@ -19,7 +18,6 @@ phase.matching: Matching tags …
 phase.preparing: Preparing the plant …
 phase.loading: Drawing the plant …
 done: The plant is live
-cancel: Cancel
 again: Read again
 details: Report
 size: Size
@@ -82,7 +80,6 @@ keys: ↑ ↓ go through · 1–8 choose a candidate · Enter accept · A all si
 byhand: by hand
 decided(one): {count} decision
 decided(other): {count} decisions
-save: Save
 undo: Discard
 selected: On the selected equipment: {asset}
 alike: Accept all {count} matching {pattern}

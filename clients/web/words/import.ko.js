@@ -2,7 +2,6 @@
 // Texts of the import panel, in Korean.
 export default `
 [import]
-close: 닫기
 drop: 모델과 태그 목록을 여기에 끌어다 놓거나 파일을 선택하세요
 more: 파일을 더 끌어다 놓거나 선택하세요
 formats: 모델: RVM(ATT 또는 TXT 포함), STEP, IGES, IFC, glTF, FBX, COLLADA, OBJ, STL, PLY, 3DS. 태그: CSV, XLSX, JSON
@@ -18,7 +17,6 @@ phase.matching: 태그 연결 중 …
 phase.preparing: 플랜트 준비 중 …
 phase.loading: 플랜트 그리는 중 …
 done: 플랜트 구성이 적용되었습니다
-cancel: 취소
 again: 다시 읽기
 details: 읽기 결과
 size: 크기
@@ -78,7 +76,6 @@ find: 태그, 설비, 이유 검색
 keys: ↑ ↓ 이동 · 1–8 후보 선택 · Enter 수락 · A 같은 형식 모두 · N 없음 · P 배치
 byhand: 수동
 decided(other): 결정 {count}개
-save: 저장
 undo: 버리기
 selected: 선택한 설비에: {asset}
 alike: {pattern} 형식 {count}개 모두 수락

@@ -3,6 +3,7 @@
 export default `
 accept: Angenommene Orte bestätigen
 close: Schließen
+cancel: Abbrechen
 sun: aus {wind}, {height}° Höhe
 
 [distance]
@@ -177,7 +178,6 @@ plant: Ganze Anlage
 edit: Ändern
 end: Beenden
 change: Änderung speichern
-cancel: Abbrechen
 
 [until]
 shift: 8 Stunden
@@ -339,9 +339,6 @@ equipment: Ein Sensor gilt für das ganze Teil: sein Ort ist angenommen
 inside: Inneres (Schnittfläche)
 uncertain: {state}, unsicher
 drawn: Für diesen Punkt berechnet. Das Bild ringsum kann um bis zu {value} abweichen
-hide: Ausblenden
-ghost: Transparent
-only: Nur dieses
 
 [following]
 title: Sie folgen der Ansicht von {who}
@@ -652,7 +649,6 @@ diff.note: Die bisherige Liste bleibt als Sicherung. Die neue gilt in wenigen Se
 diff.conflict: {file} wurde von jemand anderem geändert und ist noch nicht geladen. Nichts wurde gespeichert; die Änderungen:
 diff.left: {tag} war an {left} und ist jetzt an {asset}: Ist das beabsichtigt?
 diff.more: … und {count} weitere Zeilen
-cancel: Abbrechen
 confirm: Speichern und anwenden
 saving: Wird vorbereitet; alle sehen noch die bisherige Anlage.
 saved: Angewendet. Die vorige Liste ist als {kept} gesichert.

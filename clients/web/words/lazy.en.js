@@ -3,6 +3,7 @@
 export default `
 accept: Accept assumed locations
 close: Close
+cancel: Cancel
 sun: from {wind}, {height}° elevation
 
 [distance]
@@ -176,7 +177,6 @@ plant: The whole plant
 edit: Change
 end: End
 change: Save change
-cancel: Cancel
 
 [until]
 shift: 8 hours
@@ -338,9 +338,6 @@ equipment: One sensor represents all of it: its location is assumed
 inside: Interior (cut surface)
 uncertain: {state}, uncertain
 drawn: Computed for this point. The picture around it may be off by up to {value}
-hide: Hide
-ghost: Transparent
-only: Only this
 
 [following]
 title: Following the view of {who}
@@ -651,7 +648,6 @@ diff.note: The current list is kept as a backup. The new one applies to everyone
 diff.conflict: Someone else changed {file}, and it is not loaded yet. Nothing was saved; their changes:
 diff.left: {tag} was on {left} and is now on {asset}: is that intended?
 diff.more: … and {count} more lines
-cancel: Cancel
 confirm: Save and apply
 saving: Preparing; everyone still sees the previous plant.
 saved: Applied. The previous list is kept as {kept}.

@@ -3,6 +3,7 @@
 export default `
 accept: 추정 위치 확정
 close: 닫기
+cancel: 취소
 sun: {wind}쪽, 고도 {height}°
 
 [distance]
@@ -172,7 +173,6 @@ plant: 플랜트 전체
 edit: 수정
 end: 종료
 change: 수정 저장
-cancel: 취소
 
 [until]
 shift: 8시간
@@ -333,9 +333,6 @@ equipment: 센서 하나가 설비 전체를 나타냄: 위치는 추정
 inside: 내부(절단면)
 uncertain: {state}, 불확실
 drawn: 이 지점의 값을 직접 계산함. 주변 색의 오차는 최대 {value}
-hide: 숨기기
-ghost: 투명
-only: 이것만
 
 [following]
 title: {who}의 화면을 따라 보는 중
@@ -644,7 +641,6 @@ diff.conflict: {file}을(를) 다른 사람이 바꾸었고 아직 불러오지 
     저장하지 않았습니다. 바뀐 내용:
 diff.left: {tag}의 위치가 {left}에서 {asset}(으)로 바뀌었습니다. 맞습니까?
 diff.more: … 그 밖에 {count}행
-cancel: 취소
 confirm: 저장하고 적용
 saving: 준비 중입니다. 아직 모두에게 이전 플랜트가 보입니다.
 saved: 적용되었습니다. 이전 목록은 {kept}(으)로 보관됩니다.

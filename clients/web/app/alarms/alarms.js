@@ -5,7 +5,7 @@ import { areaOf, areasOf, isIn, tableCsv } from '../../core/alarm_table.js';
 import { timeOrDay, zoneClock } from '../../core/format.js';
 import { put, refusalText } from '../../core/refusals.js';
 import { actOnAlarm } from '../../core/requests.js';
-import { say } from '../../core/words.js';
+import { say, sayIfKnown } from '../../core/words.js';
 import { byId, make, setText } from '../common/dom.js';
 import { fillSelect } from '../common/choices.js';
 import { saveFile } from '../common/save_file.js';
@@ -377,7 +377,7 @@ export class AlarmList {
         const back = this.session.recorded && row.us !== null ? [momentButton(() => this.showMoment(row))] : [];
         return rowOf(this.session, row, this.overlay.fresh, {
             look: { class: row.waiting ? 'calls' : state, 'data-alarm': row.id, 'data-kind': kind },
-            pick: this.can(row) && row.others ? choose : null, state: say(`short.${state}`), note: this.noteOf(row),
+            pick: this.can(row) && row.others ? choose : null, state: sayIfKnown(`short.${state}`, say(`state.${state}`)), note: this.noteOf(row),
             also: this.alsoOf(row), buttons: [...back, ...buttons], fly: (one) => this.flyTo(one),
         });
     }

@@ -12,14 +12,14 @@ const BEFORE_US = 30e6, NARROW = window.matchMedia('(max-width: 899px), (max-hei
 export class Moment {
     constructor({ session, viewport, showTag, flyToTag }) {
         Object.assign(this, { session, showTag, flyToTag, alarm: null });
-        const button = (name, f) => make('button', { type: 'button', class: name, onclick: f }, say(`moment.${name}`));
+        const button = (name, f, words = `moment.${name}`) => make('button', { type: 'button', class: name, onclick: f }, say(words));
         this.name = make('strong');
         this.mark = make('span', { class: 'mark-of' });
         this.when = make('span', { class: 'when' });
         this.element = make('div', { class: 'moment', id: 'moment', role: 'status', hidden: true },
             make('p', {}, this.mark, this.name), this.when, make('div', { class: 'line' }, button('before', () => this.go(-BEFORE_US)),
-                button('at', () => this.go(0)), button('play', () => travel(session, undefined, 1)),
-                button('live', () => travel(session, null))));
+                button('at', () => this.go(0)), button('play', () => travel(session, undefined, 1), 'time.play'),
+                button('live', () => travel(session, null), 'time.live')));
         viewport.element.append(this.element);
         session.on('time', () => this.hear());
         session.on('welcome', () => this.close());

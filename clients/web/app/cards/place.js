@@ -129,7 +129,7 @@ export class Place {
         const rows = nearest.map(({ tag, distance_m, value: reading, quality }) => make('li', {}, glyph(quality), make('span', {}, tag),
             make('span', {}, away(distance_m)),
             make('b', {}, this.number(reading))));
-        const button = (how) => make('button', { type: 'button', onclick: () => this.showOnly(how, asset) }, say(`place.${how}`));
+        const button = (how) => make('button', { type: 'button', onclick: () => this.showOnly(how, asset) }, say(`shown.${how}`));
         fill(this.element,
             closeButton('close', () => this.close()),
             make('h3', {}, asset.tag || asset.id), make('p', { class: 'about' }, asset.description ?? ''),

@@ -249,7 +249,7 @@ export class Placing {
                 make('p', { class: 'off' }, say('eng.diff.left', { ...move, left: this.left(move) }))),
             make('div', { class: 'lines', tabindex: '0' }, ...lines.map(change)),
             more > 0 ? make('p', {}, say('eng.diff.more', { count: more })) : null,
-            make('div', { class: 'line' }, make('button', { type: 'button', onclick: close }, say('eng.cancel')),
+            make('div', { class: 'line' }, make('button', { type: 'button', onclick: close }, say('cancel')),
                 conflict ? null : confirm));
         if (!this.dialog.open)
             this.dialog.showModal();

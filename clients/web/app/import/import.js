@@ -63,7 +63,7 @@ export class Import {
         this.phase = make('p', { class: 'phase', role: 'status' });
         this.standby = make('p', { class: 'quiet', role: 'status' });
         this.wrong = make('p', { class: 'wrong', role: 'alert' });
-        this.cancel = button('import.cancel', () => this.try(async () => {
+        this.cancel = button('cancel', () => this.try(async () => {
             await this.exports.post('/cancel');
             await this.exports.look();
         }));
@@ -85,7 +85,7 @@ export class Import {
             make('div', { class: 'line' }, units, up, this.apply),
             make('label', { class: 'check' }, this.person, say('import.person')), make('p', { class: 'quiet' }, say('import.units.note')));
         this.element = make('section', { class: 'import', id: 'import', hidden: true, 'aria-label': say('bar.import') },
-            make('header', {}, make('h2', {}, say('bar.import')), closeButton('import.close', () => this.toggle())),
+            make('header', {}, make('h2', {}, say('bar.import')), closeButton('close', () => this.toggle())),
             make('div', { class: 'part' },
                 make('section', {}, this.drop, this.filesFold,
                     make('div', { class: 'line' }, this.phase, this.cancel, this.again), this.wrong, this.standby),

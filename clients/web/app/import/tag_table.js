@@ -39,7 +39,7 @@ export class TagTable {
             height: () => ROW_PX, keyOf: ({ tag }) => tag });
         this.detail = make('div', { class: 'detail' });
         this.count = make('span', { role: 'status' });
-        this.keep = button('import.save', () => this.save());
+        this.keep = button('named.save', () => this.save());
         this.back = button('import.undo', () => this.forget());
         this.element = make('section', { class: 'matching', hidden: true }, make('h3', {}, say('import.tags')),
             make('fieldset', { class: 'segments' }, make('legend', {}, say('import.filter')), ...FILTERS.map(choice)), this.find, this.root,

@@ -46,7 +46,7 @@ export class Notes {
         this.at = make('select', { id: 'note-at', 'aria-label': say('notes.at') });
         this.until = make('select', { id: 'note-until', 'aria-label': say('notes.until') });
         this.button = make('button', { type: 'submit' }, say('notes.save'));
-        this.cancel = make('button', { type: 'button', hidden: true, onclick: () => this.edit(null) }, say('notes.cancel'));
+        this.cancel = make('button', { type: 'button', hidden: true, onclick: () => this.edit(null) }, say('cancel'));
         this.form = make('form', { id: 'note-form', onsubmit: (event) => this.onSave(event) }, this.text,
             make('div', { class: 'line' }, this.at, this.until, this.cancel, this.button));
         this.element = make('fieldset', { id: 'notes' }, make('legend', {}, say('notes.legend')), this.list, this.form,
