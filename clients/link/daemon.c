@@ -2,7 +2,6 @@
 /* HTTP requests to a daemon, with libcurl. Its WebSocket clients use libwebsockets. */
 #include "daemon.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,18 +16,10 @@ enum { MAX_BODY_BYTES = 256 * 1024 * 1024, MAX_REDIRECTS = 5, SILENCE_S = 60 };
 /* Reads the access token from the first line of the --token-file. Returns false with the reason printed. */
 static bool read_token(struct daemon_access *access)
 {
-    size_t count;
-    char *text = text_read_file(access->token_path, 4096, &count);
-    int error = text ? 0 : errno;
-    size_t n = text ? strcspn(text, " \t\r\n") : 0;
-    bool good = n > 0 && n <= TOKEN_MAX_CHARS;
-    if (good)
-        snprintf(access->authorization, sizeof(access->authorization), "Bearer %.*s", (int)n, text);
-    else
-        fprintf(stderr, "plantcast: %s: %s\n", access->token_path,
-                error ? strerror(error) : "the first line of this file must be a token (see `plantcast token`)");
-    secret_forget(text);
-    return good;
+    const char *why = secret_read_bearer(access->token_path, access->authorization, sizeof(access->authorization));
+    if (why)
+        fprintf(stderr, "plantcast: %s: %s\n", access->token_path, why);
+    return !why;
 }
 
 /* Returns the value of the option --NAME VALUE or --NAME=VALUE at argv[*i], and advances *i; NULL: argv[*i] is another option, or has no

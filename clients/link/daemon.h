@@ -10,7 +10,7 @@
 #include "message/message.h"
 
 struct daemon_access {                        /* values of the options --token-file and --ca */
-    char authorization[TOKEN_MAX_CHARS + 16]; /* value of the HTTP header Authorization; empty: no token */
+    char authorization[TOKEN_MAX_CHARS + sizeof("Bearer ")]; /* value of the HTTP header Authorization; empty: no token */
     const char *token_path, *ca_path;         /* token file; file of trusted certificates; NULL: not given */
 };
 

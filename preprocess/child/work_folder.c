@@ -3,7 +3,6 @@
 #include "preprocess/child/work_folder.h"
 
 #include <errno.h>
-#include <ftw.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,6 +10,7 @@
 #include <unistd.h>
 
 #include "base/mem.h"
+#include "plant/plant_folder.h"
 
 static sigset_t waiting_signals(void)
 {
@@ -54,22 +54,9 @@ int work_folder_begin(struct work_folder *work, const char *target)
     return status;
 }
 
-static int remove_one(const char *path, const struct stat *st, int kind, struct FTW *at)
-{
-    (void)st;
-    (void)kind;
-    (void)at;
-    return remove(path) == 0 || errno == ENOENT ? 0 : -1;
-}
-
-int work_folder_remove(const char *path)
-{
-    return nftw(path, remove_one, 16, FTW_DEPTH | FTW_PHYS) == 0 ? 0 : -errno;
-}
-
 void work_folder_end(struct work_folder *work, bool keep)
 {
-    if (work->path && work_folder_remove(work->path) != 0)
+    if (work->path && plant_folder_remove(work->path) != 0)
         fprintf(stderr, "plantcast: %s: %s\n", work->path, strerror(errno));
     if (work->target && work->created && !keep)
         rmdir(work->target);

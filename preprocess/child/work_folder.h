@@ -21,7 +21,5 @@ int work_folder_begin(struct work_folder *work, const char *target);
 bool work_folder_interrupted(void);
 /* Removes the folder and its contents. If keep is false, also removes the target if work_folder_begin() created it and it is empty. */
 void work_folder_end(struct work_folder *work, bool keep);
-/* Removes a folder and everything in it, without following symlinks. Returns 0 or -errno. */
-int work_folder_remove(const char *path);
 
 #endif

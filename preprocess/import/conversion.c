@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "base/mem.h"
+#include "plant/plant_folder.h"
 #include "preprocess/child/child.h"
 #include "preprocess/child/child_paths.h"
 #include "preprocess/child/work_folder.h"
@@ -462,7 +463,7 @@ static bool read_model(const struct import_format *format, const char *path, con
                                                 : run_reading(&reading, &ourselves, &paths, said, why);
     good = good && take_output(&reading, glb, said, why);
     child_paths_finish(&paths);
-    work_folder_remove(own);
+    plant_folder_remove(own);
     free(input);
     mem_free(own);
     mem_free(beside);

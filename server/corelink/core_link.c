@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "base/clock.h"
+#include "base/files/secret.h"
 #include "base/mem.h"
 #include "base/text/json_text.h"
 #include "base/text/text.h"
@@ -44,7 +45,7 @@ struct pending_request {
 struct core_link {
     struct core_link_params params;
     /* value of the HTTP header `Authorization` that the link sends to the core; empty: the header is not sent */
-    char authorization[TOKEN_BYTES + 16];
+    char authorization[TOKEN_BYTES + sizeof("Bearer ")];
     int stop_fd;
     counter *up[CORE_URLS], *connects, *refused, *behind;
     /* --- below: members that only the link's thread uses */
@@ -794,19 +795,10 @@ static void *core_link_main(void *arg)
 static bool read_token(struct core_link *link)
 {
     const char *path = link->params.token_path;
-    size_t count;
-    if (!path)
-        return true;
-    char *text = text_read_file(path, 4096, &count);
-    size_t n = text ? strcspn(text, " \t\r\n") : 0;
-    bool good = n > 0 && n < TOKEN_BYTES;
-    if (good)
-        snprintf(link->authorization, sizeof(link->authorization), "Bearer %.*s", (int)n, text);
-    else
-        log_err(link->params.log, "core: %s: %s", path,
-                text ? "the first line of this file must be a token (see `plantcast token`)" : strerror(errno));
-    mem_free(text);
-    return good;
+    const char *why = path ? secret_read_bearer(path, link->authorization, sizeof(link->authorization)) : NULL;
+    if (why)
+        log_err(link->params.log, "core: %s: %s", path, why);
+    return !why;
 }
 
 static void add_up_counters(struct core_link *link)

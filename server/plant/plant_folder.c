@@ -59,9 +59,9 @@ static int remove_one(const char *path, const struct stat *st, int kind, struct 
     return remove(path) == 0 || errno == ENOENT ? 0 : -1;
 }
 
-static void remove_tree(const char *path)
+int plant_folder_remove(const char *path)
 {
-    nftw(path, remove_one, 16, FTW_DEPTH | FTW_PHYS);
+    return nftw(path, remove_one, 16, FTW_DEPTH | FTW_PHYS) == 0 ? 0 : -errno;
 }
 
 /* --- reads and writes the record of a revision ---------------------------------------------------------------------------------- */
@@ -141,7 +141,7 @@ int revision_go_on_applying(const char *folder)
         status = move_into_place(&record, folder, "new", record.entries[i].name);
     status = status == 0 ? plant_folder_sync(folder) : status;
     if (status == 0) {
-        remove_tree(last);
+        plant_folder_remove(last);
         status = move(record.path, last);
     }
     revision_record_finish(&record);
@@ -168,11 +168,11 @@ int revision_go_on_undoing(const char *folder)
     }
     status = status == 0 ? plant_folder_sync(folder) : status;
     if (status == 0) {
-        remove_tree(last);
+        plant_folder_remove(last);
         status = move(record.path, last);
     }
     if (status == 0)
-        remove_tree(last);
+        plant_folder_remove(last);
     revision_record_finish(&record);
     mem_free(last);
     return status;
@@ -190,7 +190,7 @@ static bool remove_left(const char *folder, const char *own, bool now)
             char *path = plant_folder_file(folder, entry->d_name);
             any = true;
             if (now)
-                remove_tree(path);
+                plant_folder_remove(path);
             mem_free(path);
         }
     if (dir)

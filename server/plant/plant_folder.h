@@ -36,6 +36,8 @@ bool plant_folder_settle(const struct plant_folder_params *params, char **why);
 /* Returns true if a revision (import or its undoing) is in progress or was interrupted by a kill. The files in the folder are
    then neither the old plant nor the new one. */
 bool plant_folder_unsettled(const char *folder);
+/* Removes a folder and everything in it, without following symlinks. Returns 0 or -errno. */
+int plant_folder_remove(const char *path);
 /* Returns the folder of a plant file; free with mem_free(). */
 char *plant_folder_of(const char *plant_path);
 
