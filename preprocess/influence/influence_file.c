@@ -55,13 +55,9 @@ static struct group_sensors sensors_of(const struct influence_input *input, int 
     struct group_sensors sensors = { .group = group };
     sensors.places_m = mem_array(input->sensor_count, sizeof(*sensors.places_m));
     sensors.columns = mem_array(input->sensor_count, sizeof(*sensors.columns));
-    for (size_t i = 0; i < input->sensor_count; i++) {
-        const struct plant_tag *tag = &input->plant->tags[input->sensors[i].tag];
-        if (tag->group != group || tag->place.assumed)
-            continue;
-        sensors.columns[sensors.count] = (uint32_t)i;
-        memcpy(sensors.places_m[sensors.count++], input->places_m[i], sizeof(*sensors.places_m));
-    }
+    sensors.count = plant_placed_sensors(input->plant, input->sensors, input->sensor_count, group, sensors.columns);
+    for (size_t i = 0; i < sensors.count; i++)
+        memcpy(sensors.places_m[i], input->places_m[sensors.columns[i]], sizeof(*sensors.places_m));
     return sensors;
 }
 

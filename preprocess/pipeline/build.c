@@ -45,14 +45,11 @@ static bool is_constant(const struct plant *plant, const struct plant_sensor *se
 static void hash_fit(XXH3_state_t *state, const struct plant *plant, const struct plant_sensor *sensors, size_t count, int group)
 {
     const double range = plant->groups[group].max - plant->groups[group].min;
-    size_t placed = 0;
-    for (size_t i = 0; i < count; i++) {
-        const struct plant_tag *tag = &plant->tags[sensors[i].tag];
-        if (tag->group != group || tag->place.assumed)
-            continue;
-        hash_text(state, tag->name);
-        placed++;
-    }
+    uint32_t *columns = mem_array(count, sizeof(*columns));
+    size_t placed = plant_placed_sensors(plant, sensors, count, group, columns);
+    for (size_t i = 0; i < placed; i++)
+        hash_text(state, plant->tags[sensors[columns[i]].tag].name);
+    mem_free(columns);
     if (placed < PLANT_GP_FITTED)
         XXH3_64bits_update(state, &range, sizeof(range));
 }

@@ -99,11 +99,7 @@ static void add_powers(struct concerns *concerns, const struct prepare *prepare,
     for (size_t g = 0; g < prepare->plant->group_count; g++) {
         const struct plant_group *group = &prepare->plant->groups[g];
         double steps = 255 * PLANT_DISTANCE_ERROR * group->power / 2;
-        size_t sensors = 0;
-        for (size_t s = 0; s < asset->sensor_count; s++) {
-            const struct plant_tag *tag = &prepare->plant->tags[asset->sensors[s].tag];
-            sensors += tag->group == (int)g && !tag->place.assumed;
-        }
+        size_t sensors = plant_placed_sensors(prepare->plant, asset->sensors, asset->sensor_count, (int)g, NULL);
         if (sensors > 1 && group->interpolation == INTERPOLATION_SHEPARD && group->power >= PLANT_HIGH_POWER)
             add_concern(
                 concerns, asset, 1 + steps / 255,

@@ -26,9 +26,7 @@ static void add_group(struct linear_error *linear, const struct plant *plant, in
     struct linear_error_group *to = &linear->groups[linear->group_count];
     *to = (struct linear_error_group){ .radius_m = { from->radius_m, from->radius_m } };
     to->columns = mem_array(linear->sensor_count, sizeof(*to->columns));
-    for (uint32_t i = 0; i < linear->sensor_count; i++)
-        if (plant->tags[sensors[i].tag].group == group && !plant->tags[sensors[i].tag].place.assumed)
-            to->columns[to->count++] = i;
+    to->count = plant_placed_sensors(plant, sensors, linear->sensor_count, group, to->columns);
     if (to->count == 0 || plant_group_is_exact(from)) {
         mem_free(to->columns);
         return;

@@ -43,11 +43,29 @@ size_t plant_sensors(const struct plant *plant, int asset, struct plant_sensor *
     return count;
 }
 
+static bool is_placed(const struct plant_tag *tag, int group)
+{
+    return tag->group == group && !tag->place.assumed;
+}
+
+size_t plant_placed_sensors(const struct plant *plant, const struct plant_sensor *sensors, size_t count, int group, uint32_t *columns)
+{
+    size_t placed = 0;
+    for (size_t i = 0; i < count; i++) {
+        if (!is_placed(&plant->tags[sensors[i].tag], group))
+            continue;
+        if (columns)
+            columns[placed] = (uint32_t)i;
+        placed++;
+    }
+    return placed;
+}
+
 bool plant_sensor_is_alone(const struct plant *plant, const struct plant_sensor *sensors, size_t count, size_t sensor)
 {
     const struct plant_tag *of = &plant->tags[sensors[sensor].tag];
     for (size_t i = 0; i < count; i++)
-        if (i != sensor && plant->tags[sensors[i].tag].group == of->group && !plant->tags[sensors[i].tag].place.assumed)
+        if (i != sensor && is_placed(&plant->tags[sensors[i].tag], of->group))
             return false;
     return true;
 }

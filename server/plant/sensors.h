@@ -19,6 +19,9 @@ struct plant_sensor {
 
 /* Lists the tags that have this asset and a group, in the order of the tag list; free *out with mem_free(). Returns their number. */
 size_t plant_sensors(const struct plant *plant, int asset, struct plant_sensor **out);
+/* Finds the sensors of a group whose place is known, and writes their indices to columns, which has room for `count`; NULL: only counts
+   them. Returns their number. Weights in an influence file are in this order. */
+size_t plant_placed_sensors(const struct plant *plant, const struct plant_sensor *sensors, size_t count, int group, uint32_t *columns);
 /* Returns whether the asset has no other sensor of the same group as sensor number `sensor`. Sensors with an assumed place do not
    count. */
 bool plant_sensor_is_alone(const struct plant *plant, const struct plant_sensor *sensors, size_t count, size_t sensor);

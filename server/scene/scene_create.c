@@ -64,11 +64,9 @@ struct placed_sensors {
 
 static struct placed_sensors find_placed(const struct plant *plant, const struct plant_sensor *sensors, size_t count, int group)
 {
-    struct placed_sensors placed = { 0 };
+    struct placed_sensors placed;
     uint32_t *columns = mem_array(count, sizeof(*columns));
-    for (size_t i = 0; i < count; i++)
-        if (plant->tags[sensors[i].tag].group == group && !plant->tags[sensors[i].tag].place.assumed)
-            columns[placed.count++] = (uint32_t)i;
+    placed.count = plant_placed_sensors(plant, sensors, count, group, columns);
     placed.columns_hash = influence_columns_hash(columns, placed.count);
     mem_free(columns);
     return placed;
