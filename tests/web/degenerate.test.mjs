@@ -14,8 +14,8 @@ const MB = 512;
 // Modules that are left out: those without a function that takes numbers, and those whose bad input warp.test.mjs and
 // headset.test.mjs cover.
 const TEXTS = ['depth_grid', 'headset_views', 'warp_mesh', 'warp_raster', 'alarm_actions', 'alarm_call', 'alarm_table', 'alarms',
-    'asset_tree', 'blocked', 'connection', 'decode_queue', 'decoder_fallback', 'decoding', 'gpu', 'h264', 'handover', 'health', 'keys',
-    'links', 'loop_check', 'matches', 'model', 'named_views', 'notes', 'people', 'quality', 'phrases', 'references', 'refusals',
+    'asset_tree', 'blocked', 'connection', 'decode_queue', 'decoder_fallback', 'decoding', 'gpu', 'h264', 'handover', 'health', 'http',
+    'keys', 'links', 'loop_check', 'matches', 'model', 'named_views', 'notes', 'people', 'quality', 'phrases', 'references', 'refusals',
     'requests', 'search', 'session', 'standby', 'wake', 'words'];
 
 // Runs the cases from number `first` on in another process, until one loops or fails to return. Adds the faults to `wrong`.

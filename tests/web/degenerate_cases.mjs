@@ -286,7 +286,7 @@ add('app/alarm_bar', 'limitText', [{ model, time: { atUs: null } }, { tag: { ind
 // Functions and classes that are not called here, because they take texts, messages or objects of the page, or represent a
 // session.
 const OTHERS = ['address.addressOf', 'address.readAddress', 'format.unitText', 'format.zoneOf', 'format.qualityText',
-    'history.ask', 'history.askInTime', 'history.loaderOf', 'history.witnesses', 'history.raised', 'history.severityOf',
+    'history.witnesses', 'history.raised', 'history.severityOf',
     'trend_range.readRange', 'trend_values.alarmSpans', 'app/chart_style.strokeAlong',
     'app/chart_style.setChartUnit', 'instant.fieldInstant',
     'query.readInstant', 'query.readNumbers', 'query.readSensors',

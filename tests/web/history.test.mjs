@@ -10,8 +10,9 @@ import { Devices } from '../../clients/web/app/views/devices.js';
 import { Remote } from '../../clients/web/app/views/remote.js';
 import { readAddress, writeAddress } from '../../clients/web/core/address.js';
 import {
-    arrowS, ask, BAD, clustered, density, gaps, limitLines, line, loaderOf, lost, nextTo, raised, UNCERTAIN, witnesses,
+    arrowS, BAD, clustered, density, gaps, limitLines, line, lost, nextTo, raised, UNCERTAIN, witnesses,
 } from '../../clients/web/core/history.js';
+import { ask, loaderOf } from '../../clients/web/core/http.js';
 import { fieldInstant, fieldText, ticks } from '../../clients/web/core/instant.js';
 import { LEAST_US, newSpanS, panned, readRange, zoomed } from '../../clients/web/core/trend_range.js';
 import { alarmSpans, bands, statistics, valueAt, withNewest } from '../../clients/web/core/trend_values.js';

@@ -5,7 +5,7 @@ import { asideOf } from '../core/alarm_actions.js';
 import { areaOf } from '../core/alarm_table.js';
 import { dateTime, dayTime, unitText, valueText, zoneClock } from '../core/format.js';
 import { hearAlarms, readJournal, sortJournal } from '../core/handover.js';
-import { askInTime } from '../core/history.js';
+import { askInTime } from '../core/http.js';
 import { Model } from '../core/model.js';
 import { whereText } from '../core/notes.js';
 import { language, learnWords, say } from '../core/words.js';

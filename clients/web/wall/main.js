@@ -5,7 +5,7 @@ import { AlarmCall } from '../core/alarm_call.js';
 import { Connection } from '../core/connection.js';
 import { zoneClock } from '../core/format.js';
 import { health } from '../core/health.js';
-import { askInTime, loaderOf } from '../core/history.js';
+import { askInTime, loaderOf } from '../core/http.js';
 import { Session } from '../core/session.js';
 import { brightness, burnShift, millimetresPerPx, SPREAD_MS, wallFit } from '../core/wall.js';
 import { language, learnWords, say } from '../core/words.js';

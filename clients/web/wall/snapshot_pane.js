@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A pane with another plant's picture, which this plant's server fetches. Without a picture, the pane says why.
 import { ageText } from '../core/format.js';
-import { askInTime } from '../core/history.js';
+import { askInTime } from '../core/http.js';
 import { say } from '../core/words.js';
 import { clock } from '../app/common/clock.js';
 import { make, setText } from '../app/common/dom.js';

@@ -3,7 +3,7 @@
 import { isIn, journalRow, tableCsv } from '../../core/alarm_table.js';
 import { journalSpan, readJournal } from '../../core/handover.js';
 import { fieldInstant, fieldText } from '../../core/instant.js';
-import { askInTime } from '../../core/history.js';
+import { askInTime } from '../../core/http.js';
 import { dayTime, zoneClock } from '../../core/format.js';
 import { say } from '../../core/words.js';
 import { byId, make, setText } from '../common/dom.js';

@@ -2,7 +2,7 @@
 // Drift of a sensor from its neighbours' prediction over a week, computed by the daemon from recorded readings (HTTP.md,
 // /api/v1/drift): a curve of the week on the sensor's card, and a list of drifting sensors.
 import { decimalsOf, numberText, unitText } from '../../core/format.js';
-import { askInTime } from '../../core/history.js';
+import { askInTime } from '../../core/http.js';
 import { say } from '../../core/words.js';
 
 const WIDTH = 168, HEIGHT = 28, AGAIN_MS = 600000;

@@ -2,7 +2,7 @@
 // A sensor's value as predicted from its neighbours (leave-one-out) by the daemon: a line on the sensor's card, and a list of
 // the largest deviations.
 import { unitText, valueText } from '../../core/format.js';
-import { askInTime } from '../../core/history.js';
+import { askInTime } from '../../core/http.js';
 import { say } from '../../core/words.js';
 import { make } from '../common/dom.js';
 import { driftOf, driftText } from './drift.js';

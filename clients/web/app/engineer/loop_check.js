@@ -3,7 +3,7 @@
 // the reading has the expected value.
 import { decimalsOf, numberText, unitText } from '../../core/format.js';
 import { readExpected, LoopCheckSession } from '../../core/loop_check.js';
-import { ask } from '../../core/history.js';
+import { ask } from '../../core/http.js';
 import { refusalText } from '../../core/refusals.js';
 import { tellAsEngineer } from '../../core/requests.js';
 import { say } from '../../core/words.js';

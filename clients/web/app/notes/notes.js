@@ -2,7 +2,7 @@
 // Shift notes: pins in the picture, also on video walls, and a list and a form in the panel of views. On a video wall, also
 // shows where a user at another computer (a desk) points.
 import { projector } from '../../core/camera.js';
-import { askInTime } from '../../core/history.js';
+import { askInTime } from '../../core/http.js';
 import { meets } from '../../core/labels.js';
 import { aboutText, endText, inForce, isOfPlant, placeOf, whereOf, whereText } from '../../core/notes.js';
 import { placePin } from '../../core/pins.js';

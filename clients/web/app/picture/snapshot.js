@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Saves a picture as a file. The server redraws it with the active notes; if the server signs frames, the file is the exact frame on the
 // screen.
-import { ask } from '../../core/history.js';
+import { ask } from '../../core/http.js';
 import { inForce } from '../../core/notes.js';
 import { snapshotQuery } from '../../core/query.js';
 import { halves } from '../../core/split_view.js';

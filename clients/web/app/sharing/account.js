@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The account dialog: the user's role on the server, signing in through an identity provider, and signing out.
-import { askInTime } from '../../core/history.js';
+import { askInTime } from '../../core/http.js';
 import { say } from '../../core/words.js';
 import { make } from '../common/dom.js';
 import { store } from '../common/storage.js';

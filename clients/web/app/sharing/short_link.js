@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Opens short links.
-import { ask } from '../../core/history.js';
+import { ask } from '../../core/http.js';
 import { stored } from '../common/storage.js';
 
 const ANSWER_MS = 3000; // milliseconds to wait for the server; without an answer, the page starts without the linked view

@@ -2,7 +2,8 @@
 // The time bar: a slider over the recorded history that marks gaps, lost sources and alarms (clickable), with playback, its
 // speed, a date field and a button that returns to the present.
 import { ageText, timeOrDay, zoneClock } from '../../core/format.js';
-import { arrowS, askInTime, clustered, density, lost, nextTo, raised, witnesses } from '../../core/history.js';
+import { arrowS, clustered, density, lost, nextTo, raised, witnesses } from '../../core/history.js';
+import { askInTime } from '../../core/http.js';
 import { fieldInstant, fieldText, ticks } from '../../core/instant.js';
 import { travel } from '../../core/requests.js';
 import { say } from '../../core/words.js';

@@ -3,7 +3,8 @@
 // two units to a chart; TrendTable shows numbers.
 import { calls, isGone } from '../../core/alarms.js';
 import { timeOrDay, unitText, valueText, zoneClock, zoneOf } from '../../core/format.js';
-import { ask, askInTime, BAD, gaps } from '../../core/history.js';
+import { BAD, gaps } from '../../core/history.js';
+import { ask, askInTime } from '../../core/http.js';
 import { fieldText } from '../../core/instant.js';
 import { travel } from '../../core/requests.js';
 import { newSpanS, panned, readRange, zoomed } from '../../core/trend_range.js';

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Lists paired wall displays, for engineers: pairing a display by the code that it shows, and revoking a pairing.
 import { dateTime, zoneClock } from '../../core/format.js';
-import { askInTime, loaderOf } from '../../core/history.js';
+import { askInTime, loaderOf } from '../../core/http.js';
 import { refusalText } from '../../core/refusals.js';
 import { say } from '../../core/words.js';
 import { byId, make, setText } from '../common/dom.js';

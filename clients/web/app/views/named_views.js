@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The list of saved views: opening a view and, for users with the right role, saving, reordering and restoring earlier
 // versions.
-import { askInTime } from '../../core/history.js';
+import { askInTime } from '../../core/http.js';
 import { engineersOf, idFor, isEngineers, regained, textOf, viewOf } from '../../core/named_views.js';
 import { dateTime, zoneClock } from '../../core/format.js';
 import { refusalText } from '../../core/refusals.js';

@@ -2,7 +2,7 @@
 // Controls a control room's video wall from a user's desk: sends the current view to a pane (an area) of the wall, makes the
 // pane keep a view until further notice, and points at a position in the plant.
 import { timeOrDay, zoneClock } from '../../core/format.js';
-import { askInTime, loaderOf } from '../../core/history.js';
+import { askInTime, loaderOf } from '../../core/http.js';
 import { quantityText } from '../../core/model.js';
 import { textOf, viewOf } from '../../core/named_views.js';
 import { refusalText } from '../../core/refusals.js';
