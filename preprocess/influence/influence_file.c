@@ -93,10 +93,8 @@ static const char **names_of(const struct influence_input *input, const struct g
  * (PLANT_GP_FITTED). */
 static void take_defaults(const struct influence_making *making, const struct plant_group *of, size_t count, struct gaussian_params *gp)
 {
-    const double range = of->max - of->min;
     gp->range_m = isnan(gp->range_m) ? PLANT_GP_RANGE * surface_report(making->input->surface)->size_m : gp->range_m;
-    gp->noise = isnan(gp->noise) ? PLANT_GP_NOISE * range : gp->noise;
-    gp->deviation = isnan(gp->deviation) ? PLANT_GP_DEVIATION * range : gp->deviation;
+    plant_gp_defaults(of, &gp->noise, &gp->deviation);
     log_warn(making->log,
              "asset %s, group %s: the Gaussian process (gp) cannot be fitted to %zu sensors (at least %d are needed): using default range "
              "%.3g m, noise %.3g, "

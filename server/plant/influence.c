@@ -47,8 +47,15 @@ void plant_gp_read(struct yaml_reader *reader, yaml_node_t *node, void *record)
     yaml_map_read(reader, node, "gp", keys, &group->gp, &map);
 }
 
+void plant_gp_defaults(const struct plant_group *group, double *noise, double *deviation)
+{
+    const double range = group->max - group->min;
+    *noise = isnan(*noise) ? PLANT_GP_NOISE * range : *noise;
+    *deviation = isnan(*deviation) ? PLANT_GP_DEVIATION * range : *deviation;
+}
+
 /* Sets defaults for the interpolation `gp` if the plant file names no file of readings from which plantcast-prep can determine
-   the parameters. The default deviation is a quarter of the group's range, the noise a 200th of the range. */
+   the parameters. */
 void plant_gp_check(struct yaml_reader *reader, const struct yaml_map *map, const struct plant *plant, struct plant_group *group)
 {
     struct plant_gp *gp = &group->gp;
@@ -56,8 +63,7 @@ void plant_gp_check(struct yaml_reader *reader, const struct yaml_map *map, cons
         plant_resolve_path(plant, &gp->fit);
         return;
     }
-    gp->deviation = isnan(gp->deviation) ? PLANT_GP_DEVIATION * (group->max - group->min) : gp->deviation;
-    gp->noise = isnan(gp->noise) ? PLANT_GP_NOISE * (group->max - group->min) : gp->noise;
+    plant_gp_defaults(group, &gp->noise, &gp->deviation);
     if (plant_prepares(group, INTERPOLATION_GP) && isnan(gp->range_m))
         yaml_error(reader, yaml_map_place(map, "gp"),
                    "group %s: gp requires 'gp: { range_m: ... }' (correlation length in metres) or 'fit' (a file of readings)",

@@ -47,5 +47,7 @@ static inline bool plant_prepares_any(const struct plant_group *group)
 /* Returns the decay length of heat along an asset's wall in metres: sqrt(k t / h), with the conductivity k, the wall thickness
    t and the heat transfer coefficient h. The plant file must give the wall thickness. */
 double plant_decay_m(const struct plant_asset *asset);
+/* Sets *noise and *deviation, parameters of `gp`, to defaults for the group's range if they are NaN. */
+void plant_gp_defaults(const struct plant_group *group, double *noise, double *deviation);
 
 #endif

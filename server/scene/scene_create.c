@@ -77,9 +77,9 @@ static struct placed_sensors find_placed(const struct plant *plant, const struct
 static bool is_as_stated(const struct plant_group *group, const struct influence_entry *entry)
 {
     const struct plant_gp *gp = &group->gp;
-    const bool has_defaults = entry->sensor_count < PLANT_GP_FITTED;
-    const double noise = isnan(gp->noise) && has_defaults ? PLANT_GP_NOISE * (group->max - group->min) : gp->noise;
-    const double deviation = isnan(gp->deviation) && has_defaults ? PLANT_GP_DEVIATION * (group->max - group->min) : gp->deviation;
+    double noise = gp->noise, deviation = gp->deviation;
+    if (entry->sensor_count < PLANT_GP_FITTED)
+        plant_gp_defaults(group, &noise, &deviation);
     return (isnan(gp->range_m) || gp->range_m == entry->range_m) && (isnan(noise) || noise == entry->noise) &&
            (isnan(deviation) || deviation == entry->deviation);
 }
