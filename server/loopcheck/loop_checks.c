@@ -338,29 +338,22 @@ enum refusal_code loop_checks_add(struct loop_checks *loop_checks, int tag, cons
     return atomic_file_not_kept(file_writer_queue(loop_checks->writer, &own->job));
 }
 
-void loop_checks_mirror(struct loop_checks *loop_checks, bool all, bool begun)
+void loop_checks_mirror(struct loop_checks *loop_checks, const struct loop_check_row *rows, size_t count, bool all, bool begun)
 {
-    if (all)
-        forget_all(loop_checks);
     loop_checks->begun = begun;
     loop_checks->number++;
-    if (all)
+    if (all) {
+        forget_all(loop_checks);
         loop_checks->replaced_number = loop_checks->number;
-}
-
-void loop_checks_mirror_tag(struct loop_checks *loop_checks, int tag, const struct loop_check *check)
-{
-    loop_checks->at[tag] = *check;
-    loop_checks->numbers[tag] = loop_checks->number;
-}
-
-void loop_checks_mirror_end(struct loop_checks *loop_checks)
-{
+    }
+    for (size_t i = 0; i < count; i++) {
+        loop_checks->at[rows[i].tag] = rows[i].check;
+        loop_checks->numbers[rows[i].tag] = loop_checks->number;
+    }
     mark_unproven(loop_checks);
 }
 
-/* --- queries
-   ---------------------------------------------------------------------------------------------------------------------------- */
+/* --- queries ---------------------------------------------------------------------------------------------------------------- */
 
 bool loop_checks_are_mirrored(const struct loop_checks *loop_checks)
 {

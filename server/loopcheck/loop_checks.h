@@ -47,12 +47,12 @@ enum refusal_code loop_checks_add(struct loop_checks *loop_checks, int tag, cons
 bool loop_checks_are_mirrored(const struct loop_checks *loop_checks);
 /* Returns REFUSAL_NONE if this daemon records loop checks, or why it does not. loop_checks NULL: no history is recorded. */
 enum refusal_code loop_checks_refusal(const struct loop_checks *loop_checks);
-/* Begins to store checks that the core has recorded. all: forgets the checks stored before. begun: loop_checks_begun() of the core. */
-void loop_checks_mirror(struct loop_checks *loop_checks, bool all, bool begun);
-/* Stores one of the core's checks, after loop_checks_mirror(). */
-void loop_checks_mirror_tag(struct loop_checks *loop_checks, int tag, const struct loop_check *check);
-/* Ends the storing that loop_checks_mirror() began: only now does loop_checks_unproven() return the new state of all tags. */
-void loop_checks_mirror_end(struct loop_checks *loop_checks);
+struct loop_check_row {
+    int tag;
+    struct loop_check check;
+};
+/* Stores checks that the core has recorded. all: forgets the checks stored before. begun: loop_checks_begun() of the core. */
+void loop_checks_mirror(struct loop_checks *loop_checks, const struct loop_check_row *rows, size_t count, bool all, bool begun);
 /* Returns the newest loop check recorded for a tag. */
 const struct loop_check *loop_checks_of(const struct loop_checks *loop_checks, int tag);
 /* Returns true if any tag of the plant has been checked. From the first check on, all tags that have not passed are marked as unproven. */

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/mem.h"
 #include "base/text/json_text.h"
 #include "message/json_fields.h"
 #include "message/json_values.h"
@@ -86,15 +87,17 @@ static double value_of(const json_t *value)
     return json_is_number(value) ? json_number_value(value) : NAN;
 }
 
-/* Reads a row of `proofs`. Returns the tag; -1: the row is invalid. */
-static int read_check(const json_t *row, size_t tag_count, struct loop_check *check)
+/* Reads a row of `proofs`. Returns false if the row is invalid. */
+static bool read_row(const json_t *json, size_t tag_count, struct loop_check_row *out)
 {
     json_int_t tag, time_us;
     const char *state, *who, *remark;
     json_t *value, *expected, *tolerance;
-    if (json_unpack((json_t *)row, "[I,s,I,o,o,o,s,s]", &tag, &state, &time_us, &value, &expected, &tolerance, &who, &remark) != 0 ||
+    struct loop_check *check = &out->check;
+    if (json_unpack((json_t *)json, "[I,s,I,o,o,o,s,s]", &tag, &state, &time_us, &value, &expected, &tolerance, &who, &remark) != 0 ||
         tag < 0 || (size_t)tag >= tag_count)
-        return -1;
+        return false;
+    out->tag = (int)tag;
     *check = (struct loop_check){
         .time_us = time_us, .value = value_of(value), .expected = value_of(expected), .tolerance = value_of(tolerance)
     };
@@ -103,23 +106,20 @@ static int read_check(const json_t *row, size_t tag_count, struct loop_check *ch
             check->state = (enum loop_check_state)i;
     snprintf(check->who, sizeof(check->who), "%s", who);
     snprintf(check->remark, sizeof(check->remark), "%s", remark);
-    return check->state == LOOP_CHECK_NONE ? -1 : (int)tag;
+    return check->state != LOOP_CHECK_NONE;
 }
 
 bool loop_checks_take(struct loop_checks *loop_checks, const struct plant *plant, const json_t *message)
 {
     const json_t *list = json_object_get(message, "tags");
-    struct loop_check check;
-    if (!json_is_array(list))
-        return false;
-    for (size_t i = 0; i < json_array_size(list); i++)
-        if (read_check(json_array_get(list, i), plant->tag_count, &check) < 0)
-            return false;
-    loop_checks_mirror(loop_checks, json_is_true(json_object_get(message, "all")), json_is_true(json_object_get(message, "begun")));
-    for (size_t i = 0; i < json_array_size(list); i++) {
-        int tag = read_check(json_array_get(list, i), plant->tag_count, &check);
-        loop_checks_mirror_tag(loop_checks, tag, &check);
-    }
-    loop_checks_mirror_end(loop_checks);
-    return true;
+    size_t count = json_array_size(list);
+    bool good = json_is_array(list);
+    struct loop_check_row *rows = mem_array(count, sizeof(*rows));
+    for (size_t i = 0; i < count && good; i++)
+        good = read_row(json_array_get(list, i), plant->tag_count, &rows[i]);
+    if (good)
+        loop_checks_mirror(loop_checks, rows, count, json_is_true(json_object_get(message, "all")),
+                           json_is_true(json_object_get(message, "begun")));
+    mem_free(rows);
+    return good;
 }
