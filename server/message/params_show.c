@@ -184,7 +184,7 @@ static void take_quantity(const struct params_context *context, const struct fie
         return;
     view_default_scale(context->scene, view);
     if (now->show == SHOW_DIFFERENCE || before->show == SHOW_DIFFERENCE)
-        view->colormap = now->show == SHOW_DIFFERENCE ? colormap_find(context->scene->plant, "diverging") : 0;
+        view->colormap = view_default_colormap(context->scene->plant, now->show);
 }
 
 /* Returns true if the view can be drawn correctly, otherwise fills *error. An asset with only one sensor may have a surface

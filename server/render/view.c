@@ -54,6 +54,11 @@ void view_default_scale(const struct scene *scene, struct view *view)
     memcpy(view->color_scale.lines, group->isolines, sizeof(group->isolines));
 }
 
+int view_default_colormap(const struct plant *plant, enum field_show show)
+{
+    return show == SHOW_DIFFERENCE ? colormap_find(plant, "diverging") : 0;
+}
+
 void view_default(const struct scene *scene, int width_px, int height_px, struct view *view)
 {
     const struct plant *plant = scene->plant;

@@ -88,6 +88,8 @@ void view_default_light(const struct scene *scene, double towards[3]);
 /* Sets the default scale for the quantity that the view shows: the group's range, isolines and logarithm, or those for
    distances or for differences from a baseline. */
 void view_default_scale(const struct scene *scene, struct view *view);
+/* Returns the colour map that a view of this kind of number has by default. */
+int view_default_colormap(const struct plant *plant, enum field_show show);
 /* Returns whether the view shows values relative to their alarm limits (SHOW_OPERATOR). Such a view has its own colours, isolines and
    legend, and ignores colormap and color_scale. */
 bool view_is_operator(const struct view *view);

@@ -55,8 +55,7 @@ static json_t *defaults_of(const struct session_context *context, const struct v
     view.field.baseline = shown->field.baseline;
     view_default_scale(scene, &view);
     field_default_range(scene, &shown->field, &view.range_min, &view.range_max);
-    if (view.field.show == SHOW_DIFFERENCE)
-        view.colormap = colormap_find(context->plant, "diverging");
+    view.colormap = view_default_colormap(context->plant, view.field.show);
     return members_of(context, &view);
 }
 
