@@ -91,15 +91,21 @@ static json_t *right_defaults(const struct session_context *context, const struc
     return defaults;
 }
 
-/* Deletes the members that equal `defaults`. */
+/* Deletes the members that equal `defaults`, except those that say what the view shows. */
 static void drop_equal(json_t *o, const json_t *defaults)
 {
-    static const char *const keys[] = { "interpolation", "distance",      "fill",  "strength", "decay",  "power",      "radius_m",
-                                        "reach_m",       "sensors",       "range", "colormap", "scale",  "breaks",     "isolines",
-                                        "look",          "ramp_interval", "light", "backdrop", "arrows", "environment" };
-    for (size_t i = 0; i < sizeof(keys) / sizeof(keys[0]); i++)
-        if (json_object_get(o, keys[i]) && json_equal(json_object_get(o, keys[i]), json_object_get(defaults, keys[i])))
-            json_object_del(o, keys[i]);
+    static const char *const kept[] = { "group", "show", "sensor", "baseline", "split", "selected", "hidden", "isolate", "ghost", "clip" };
+    const char *key;
+    json_t *value;
+    void *next;
+    json_object_foreach_safe(o, next, key, value)
+    {
+        bool keeps = false;
+        for (size_t i = 0; i < sizeof(kept) / sizeof(kept[0]); i++)
+            keeps |= !strcmp(key, kept[i]);
+        if (!keeps && json_equal(value, json_object_get(defaults, key)))
+            json_object_del(o, key);
+    }
 }
 
 /* Deletes the members that equal the defaults of a view with the same group, show, sensor and baseline, because a reloaded plant may have
