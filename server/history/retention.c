@@ -172,7 +172,10 @@ bool retention_by_age(struct retention_clock *clock, struct log *log, const char
 {
     const int64_t ahead_ns = utc_ns - mono_ns;
     int64_t from_us = 0, to_us = 0;
-    if (clock->was_called ? ahead_ns - clock->ahead_ns > JUMP_US * 1000 : find_pause(log, folder, utc_ns / 1000, &from_us, &to_us)) {
+    bool jumped = clock->was_called && ahead_ns - clock->ahead_ns > JUMP_US * 1000;
+    if (!clock->was_called)
+        jumped = find_pause(log, folder, utc_ns / 1000, &from_us, &to_us);
+    if (jumped) {
         clock->applies_from_ns = mono_ns + KEEP_AFTER_JUMP_NS;
         clock->pause_from_us = from_us;
         clock->pause_to_us = to_us;

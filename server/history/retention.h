@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Retention of history: deletes whole months that are too old or exceed the size limit, or only the oldest points of a month.
-   The last ten minutes are never deleted. Call only retention_by_age() outside the recording thread. */
+   The last ten minutes are never deleted. All functions except retention_by_age() must run in the recording thread. */
 #ifndef HISTORY_RETENTION_H
 #define HISTORY_RETENTION_H
 #include <stdbool.h>
