@@ -230,6 +230,11 @@ void connection_record(const struct server_context *server, struct lws *wsi, con
                                                            .why = why });
 }
 
+void connection_record_refusal(const struct server_context *server, struct lws *wsi, const char *path, const char *why)
+{
+    connection_record(server, wsi, "access", "refused", path, why);
+}
+
 /* Records a login in the audit trail. Tokens left unchecked because the address is throttled are only counted, so that
    thousands of attempts do not fill the trail. */
 static void record_login(struct server_context *server, const struct connection *connection, const char *way,

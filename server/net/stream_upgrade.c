@@ -46,7 +46,7 @@ int stream_check_upgrade(struct server_context *server, struct lws *wsi)
     if (!connection_identify(server, wsi, &refusal))
         return (core ? deny_node : refuse)(server, wsi, refusal.status, refusal.text ? refusal.text : refusal_words(refusal.code));
     if (!connection_origin_allowed(server, wsi)) {
-        connection_record(server, wsi, "access", "refused", path, refusal_words(REFUSAL_FOREIGN));
+        connection_record_refusal(server, wsi, path, refusal_words(REFUSAL_FOREIGN));
         return refuse(server, wsi, HTTP_STATUS_FORBIDDEN, "this origin is not allowed; --origin URL allows one\n");
     }
     if (core && (why = renderers_refusal(server, wsi)))

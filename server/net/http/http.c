@@ -180,13 +180,12 @@ static int serve_route(struct server_context *server, struct http_exchange *requ
     unsigned scope = holder->views[0] ? VIEWS : holder->display ? DISPLAY : 0;
     if (scope && routes[i].least > ROLE_NOBODY) {
         if (!(routes[i].narrowed & scope)) {
-            connection_record(server, request->wsi, "access", "refused", routes[i].path, "the token does not allow this request");
+            connection_record_refusal(server, request->wsi, routes[i].path, "the token does not allow this request");
             return refuse(request, scope == VIEWS ? &NOT_IN_VIEWS : &NOT_ON_DISPLAY);
         }
     } else if (role < routes[i].least && !(role_is_node(role) && (routes[i].narrowed & NODE))) {
         bool engineer = routes[i].least == ROLE_ENGINEER;
-        connection_record(server, request->wsi, "access", "refused", routes[i].path,
-                          engineer ? "the request needs the role engineer" : "pictures only");
+        connection_record_refusal(server, request->wsi, routes[i].path, engineer ? "the request needs the role engineer" : "pictures only");
         return engineer ? refuse_others(request, role) : refuse(request, role == ROLE_NOBODY ? &NEED_TOKEN : &NOT_FOR_YOU);
     }
     if (routes[i].least > ROLE_NOBODY && is_foreign_page(request->wsi))
@@ -199,7 +198,7 @@ static int serve_post(struct server_context *server, struct http_exchange *reque
     enum role role = connection_of(request->wsi)->role;
     request->close = true; /* closes the connection after the answer, because the client may send a body that nobody will read */
     if (role < ROLE_ENGINEER) {
-        connection_record(server, request->wsi, "access", "refused", path, "the request needs the role engineer");
+        connection_record_refusal(server, request->wsi, path, "the request needs the role engineer");
         return refuse_others(request, role);
     }
     if (is_foreign_page(request->wsi))

@@ -194,7 +194,7 @@ int request_refuse(struct http_exchange *request, int status, enum refusal_code 
 
 int request_refuse_foreign(struct server_context *server, struct http_exchange *request, const char *path)
 {
-    connection_record(server, request->wsi, "access", "refused", path, refusal_words(REFUSAL_FOREIGN));
+    connection_record_refusal(server, request->wsi, path, refusal_words(REFUSAL_FOREIGN));
     return request_refuse(request, HTTP_STATUS_FORBIDDEN, REFUSAL_FOREIGN);
 }
 

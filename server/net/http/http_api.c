@@ -55,7 +55,7 @@ static int ask_recorded(struct server_context *server, struct http_exchange *req
                : history_query_parse(server->params.plant.scene->plant, args.list, args.count, now_us, &query, &error)))
         return request_answer_error(request, &error);
     if (!gaps && !may_read(server, request, &query)) {
-        connection_record(server, request->wsi, "access", "refused", "/api/v1/history", "the display's token does not permit these tags");
+        connection_record_refusal(server, request->wsi, "/api/v1/history", "the display's token does not permit these tags");
         return request_answer_text(request, HTTP_STATUS_FORBIDDEN, "this display's token does not permit trends of these tags\n");
     }
     return await_history(server, request, &query);

@@ -142,7 +142,7 @@ static int draw_picture(struct server_context *server, struct http_exchange *req
 static int refuse_query(struct server_context *server, struct http_exchange *request, const char *path, const struct message_error *error)
 {
     if (!strcmp(error->code, "not_allowed"))
-        connection_record(server, request->wsi, "access", "refused", path, error->text);
+        connection_record_refusal(server, request->wsi, path, error->text);
     return request_answer_error(request, error);
 }
 
