@@ -14,7 +14,7 @@ enum { MAX_KNOWN_TOKENS = 256 };
    other users of the address cannot lock its holder out */
 struct known_token {
     uint8_t hash[TOKEN_HASH_BYTES];
-    int64_t said_ns, used_ns; /* said_ns: time at which the login was last reported as new (LOGIN_GOOD_NEW) */
+    int64_t reported_ns, used_ns; /* reported_ns: time at which the login was last reported as new (LOGIN_GOOD_NEW) */
 };
 
 struct throttle_entry {
@@ -104,13 +104,13 @@ static enum login let_in(struct throttle_entry *entry, const uint8_t *hash, int6
     struct known_token *known = find_known(entry, hash);
     if (known)
         known->used_ns = now_ns;
-    if (known && now_ns - known->said_ns < LOG_INTERVAL_NS)
+    if (known && now_ns - known->reported_ns < LOG_INTERVAL_NS)
         return LOGIN_GOOD;
     if (!known) {
         known = known_place(entry);
         memcpy(known->hash, hash, TOKEN_HASH_BYTES);
     }
-    known->said_ns = known->used_ns = now_ns;
+    known->reported_ns = known->used_ns = now_ns;
     return LOGIN_GOOD_NEW;
 }
 
