@@ -290,7 +290,7 @@ static void never_stale(struct historian_setup *s)
 {
     for (int i = 0; i < TAGS; i++)
         s->plant->tags[i].validity.stale_s = PLANT_NEVER_STALE_S;
-    s->store = test_store(s->plant);
+    s->store = test_store(s->plant); /* a store takes over the tags' stale times when it is created */
     mem_free(s->tags);
     s->tags = history_tags(s->plant);
 }
@@ -546,9 +546,7 @@ CASE(lost_samples_leave_a_gap)
 {
     char *path = temp_write_text(s->folder, "history", "not a folder");
     struct history_series series;
-    for (int i = 0; i < TAGS; i++)
-        s->plant->tags[i].validity.stale_s = PLANT_NEVER_STALE_S;
-    s->store = test_store(s->plant); /* a store takes over the tags' stale times when it is created */
+    never_stale(s);
     start_with_limit(s, 8 * TAGS);
     for (int i = 0; i < 20; i++) {
         write_all(s, bent(i));
@@ -575,9 +573,7 @@ CASE(lost_samples_leave_a_gap)
 CASE(a_loss_begins_when_samples_are_lost)
 {
     char *path = temp_write_text(s->folder, "history", "not a folder");
-    for (int i = 0; i < TAGS; i++)
-        s->plant->tags[i].validity.stale_s = PLANT_NEVER_STALE_S;
-    s->store = test_store(s->plant); /* a store takes over the tags' stale times when it is created */
+    never_stale(s);
     start_with_limit(s, 4 * TAGS);
     int64_t newest_ns = 0;
     for (int i = 0; i < 5; i++) {
@@ -613,9 +609,7 @@ CASE(a_loss_ends_with_the_daemon)
     struct rlimit unlimited;
     signal(SIGXFSZ, SIG_IGN);
     assert_int_equal(getrlimit(RLIMIT_FSIZE, &unlimited), 0);
-    for (int i = 0; i < TAGS; i++)
-        s->plant->tags[i].validity.stale_s = PLANT_NEVER_STALE_S;
-    s->store = test_store(s->plant); /* a store takes over the tags' stale times when it is created */
+    never_stale(s);
     start_with_limit(s, 4 * TAGS);
     write_all(s, 1);
     assert_true(comes_to(s, QUALITY_GOOD)); /* the month's file exists */
