@@ -481,10 +481,10 @@ CASE(each_address_of_a_name_is_tried)
     modbus_case_serve(s);
     modbus_case_expect(s, 0, QUALITY_GOOD, 5);
     int64_t began_ns = clock_mono_ns();
-    while (s->device.connections < 5 && clock_mono_ns() - began_ns < 60 * NS_PER_S)
+    while (s->device.connections < 21 && clock_mono_ns() - began_ns < 60 * NS_PER_S)
         sleep_ns(5 * NS_PER_MS);
-    /* without remembering the second address, each of these connections would take 1.5 s */
-    assert_true(clock_mono_ns() - began_ns < 3 * NS_PER_S);
+    /* without remembering the second address, each of these connections would take 1.5 s, together at least 30 s */
+    assert_true(clock_mono_ns() - began_ns < 15 * NS_PER_S);
     full_close(&full);
 }
 
