@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Starts a plant with active alarms, and opens every panel, card and dialog of the page in turn.
+// Starts a plant with active alarms, opens every panel, card and dialog of the page in turn, and finds faults of their texts.
 import { appendFileSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { drawnAt, land } from './browser.mjs';
@@ -103,3 +103,38 @@ export const cutOff = (page) => page.evaluate(() => {
     return [...tight, ...out, ...wide].map((e) => `${e.tagName}#${e.id}.${e.className} ${e.textContent.trim().slice(0, 40)} ` +
         `${e.scrollWidth}>${e.clientWidth}`);
 });
+
+// Encloses the words of the page's German word files by two marks without a glyph or a width, but neither values nor names of keys
+// between words.
+const [BEGIN, END] = ['\u2063', '\u2064'];
+export const markWords = (page) => page.route(/\/words\/(lazy\.|alarms\.)?de\.js/, async (route) => {
+    const text = await (await route.fetch()).text();
+    const marked = text.replace(/^([\w. ]+(?:\(\w+\))?: )(.*(?:\n +.*)*)$/gm,
+        (_, key, said) => key + said.replace(/(^|[}\]])([^{}[\]]+)/g, `$1${BEGIN}$2${END}`));
+    await route.fulfill({ body: marked, contentType: 'text/javascript' });
+});
+
+// Returns the visible texts outside the marks of markWords(). They must come from the plant.
+export const unsaid = (page) => page.evaluate(([begin, end]) => {
+    const { session: { model } } = globalThis.plantcast;
+    const own = [model.plant, ...model.groups, ...model.assets, ...model.tags, ...model.colormaps].flatMap((one) =>
+        [one.name, one.id, one.tag, one.description, one.quantity, one.unit, one.source]).filter(Boolean);
+    const ours = ['Plantcast', '°C', 'JPEG', 'UTC'];
+    const allowed = new Set([...own, ...own.map((text) => text[0].toUpperCase() + text.slice(1)), ...ours]);
+    const shown = (element) => element?.checkVisibility?.() && !element.closest('code, kbd, a, svg, .limit-flag, .limits, #config, #clock');
+    const found = [], say = (text, where) => {
+        const rest = [...allowed].sort((a, b) => b.length - a.length).reduce((left, word) => left.replaceAll(word, ' '), text);
+        if (/\p{L}{3,}/u.test(rest.replace(new RegExp(`${begin}[^${begin}${end}]*${end}`, 'g'), ' ')))
+            found.push(`${where}: ${text}`);
+    };
+    const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+    for (let node = walker.nextNode(); node; node = walker.nextNode()) {
+        if (shown(node.parentElement))
+            say(node.data, node.parentElement.id || node.parentElement.className || node.parentElement.tagName);
+    }
+    for (const element of document.querySelectorAll('[title], [aria-label], [placeholder], [aria-description]')) {
+        for (const name of ['title', 'aria-label', 'placeholder', 'aria-description'])
+            say(element.getAttribute(name) ?? '', `${name} of ${element.id || element.className}`);
+    }
+    return found;
+}, [BEGIN, END]);
