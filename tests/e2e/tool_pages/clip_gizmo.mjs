@@ -3,16 +3,16 @@
 // the whole box; in both halves of a split picture; by mouse, keyboard and touch.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
+import { boxes } from './boxes.mjs';
 import { drawnAt, openPage, settle, shoot, TABLET, waitForPicture } from '../support/browser.mjs';
 import { setUp } from '../support/set_up.mjs';
-import { notBuilt, TinyPlant } from '../support/tiny_plant.mjs';
+import { notBuilt } from '../support/tiny_plant.mjs';
 
 const options = { skip: notBuilt(), timeout: 200000 };
-let plant, url, browser, page;
+let url, browser, page;
 
 setUp(options.skip, async (own) => {
-    plant = own(await TinyPlant.running({ fresh: true }));
-    url = `http://127.0.0.1:${plant.port}/`;
+    url = `http://127.0.0.1:${(await boxes()).port}/`;
     browser = own(await openPage(url, { viewport: { width: 1280, height: 800 } }));
     page = browser.page;
     await waitForPicture(page);

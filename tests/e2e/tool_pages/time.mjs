@@ -14,12 +14,15 @@ const options = { skip: notBuilt(), timeout: 200000 };
 const BEGIN_S = Math.floor(Date.now() / 1000) - 3000;
 let plant, browser, page;
 
-// Returns a CSV file of history: each tag follows a slow wave, and TI-1 is Bad from minute 20 to 25.
+// Returns a CSV file of history: each tag follows a slow wave, and TI-1 is Bad from minute 20 to 25. The waves of TI-2 and PI-1 have
+// noise, because the history leaves out points of a smooth curve.
+const STEP_S = 5;
 function series() {
-    const lines = ['Tag,Time,Value,Quality'];
-    for (let s = 0; s <= 2900; s += 5) {
+    const lines = ['Tag,Time,Value,Quality'], noise = (n) => Math.abs(Math.sin(n * 12.9898) * 43758.5453) % 1;
+    for (let s = 0; s <= 2900; s += STEP_S) {
         const bad = s >= 1200 && s < 1500;
-        const wave = [50 + 30 * Math.sin(s / 300), 40 + 10 * Math.cos(s / 400), 5 + Math.sin(s / 200)].map((value) => value.toFixed(3));
+        const wave = [50 + 30 * Math.sin(s / 300), 40 + 10 * Math.cos(s / 400) + 2 * noise(s), 5 + Math.sin(s / 200) + noise(s + 1)]
+            .map((value) => value.toFixed(3));
         lines.push(bad ? `TI-1,${BEGIN_S + s},,0x80050000` : `TI-1,${BEGIN_S + s},${wave[0]},Good`);
         lines.push(`TI-2,${BEGIN_S + s},${wave[1]},Good`, `PI-1,${BEGIN_S + s},${wave[2]},Good`);
     }
@@ -140,6 +143,14 @@ const drawn = ([from, to]) => page.waitForFunction((span) => { // Waits until th
     return !isAsking && now.every((us, i) => Math.abs(us - span[i]) < 3e6);
 }, [from, to]);
 
+// Returns the smallest number of points that the curves of TI-2 and PI-1 have in the drawn range, relative to the number of their
+// recorded values or to 100, if more are recorded.
+const leastDrawn = () => page.evaluate((stepS) => {
+    const { series: all, span: [from, to] } = globalThis.plantcast.trends, recorded = (to - from) / 1e6 / stepS;
+    return Math.min(...['TI-2', 'PI-1'].map((name) => all.get(name)?.points.filter(([us]) => us >= from && us <= to).length ?? 0)) /
+        Math.min(100, recorded);
+}, STEP_S);
+
 test('a drag zooms, the wheel zooms about the pointer, dragging the axis pans, and each can be undone', options, async () => {
     await page.waitForFunction(() => globalThis.plantcast.trends.series.size === 3 && globalThis.plantcast.trends.chart);
     await drawn(await rangeOf());
@@ -155,6 +166,7 @@ test('a drag zooms, the wheel zooms about the pointer, dragging the axis pans, a
     assert.ok([a, b].every((x, i) => Math.abs(at(x) - zoomed[i]) < 12e6), JSON.stringify([[a, b].map(at), zoomed]));
     assert.equal((await shown()).past, false, 'a drag does not count as a click');
     await drawn(zoomed);
+    assert.ok(await leastDrawn() > 0.5, 'the curves of the zoomed range lack no points');
     assert.match(await page.locator('#trend-range').inputValue(), /^\d{4}-\d\d-\d\d \d\d:\d\d.* to /);
     await settle(page); // waits again, because the labels of the new range may change the widths of the axes
     const plot = await page.locator('#trend-chart .u-over').boundingBox();

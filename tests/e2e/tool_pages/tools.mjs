@@ -6,19 +6,20 @@ import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { afterEach, test } from 'node:test';
 import jsqr from 'jsqr';
+import { boxes } from './boxes.mjs';
 import {
     drawnAt, grab, openPage, PHONE, readPng, SCREENSHOTS, settle, shoot, SHOOTS, TABLET, view, waitForHealth, waitForPicture,
 } from '../support/browser.mjs';
 import { contrast, deltaE } from '../support/pixels.mjs';
 import { setUp } from '../support/set_up.mjs';
-import { notBuilt, TinyPlant } from '../support/tiny_plant.mjs';
+import { notBuilt } from '../support/tiny_plant.mjs';
 
 const options = { skip: notBuilt(), timeout: 200000 };
 const SCREEN = { viewport: { width: 1280, height: 800 } };
 let plant, url, browser, page;
 
 setUp(options.skip, async (own) => {
-    plant = own(await TinyPlant.running({ fresh: true }));
+    plant = await boxes();
     url = `http://127.0.0.1:${plant.port}/`;
     browser = own(await openPage(url, SCREEN));
     page = browser.page;
