@@ -7,12 +7,12 @@ import { existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { basename, dirname, extname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { GlbWriter, relativeTo } from './glb_writer.mjs';
-import { collectErrors, findDamaged, findLosses, misplacedLines, partlyLostLines, wrongIndexLines, wrongIndices } from './ifc_losses.mjs';
+import { collectErrors, findDamaged, findLosses, listed, misplacedLines, partlyLostLines, wrongIndexLines, wrongIndices }
+    from './ifc_losses.mjs';
 import { openingLines, uncutOpenings } from './ifc_openings.mjs';
 import { readSolids, takeSolids, withPlacements } from './ifc_solids.mjs';
 
 const CORNERS = 24; // number of segments that approximate a full circle
-const MAX_NAMED = 20;
 const MAX_DEPTH = 400; // maximum depth of the tree of nodes; plantcast-prep reads at most 512 levels
 const NOT_SHOWN = new Set(['IfcOpeningElement', 'IfcOpeningStandardCase', 'IfcSpace', 'IfcDistributionPort', 'IfcVirtualElement']);
 
@@ -186,12 +186,12 @@ function addTree(glb, model, { shown, geometries }, root) {
         const node = glb.addNode(parent, name, model.propertiesOf(id, within));
         if (parts) {
             const { mesh, matrix, dropped } = meshOf(glb, geometries, parts, name);
-            if (mesh >= 0 && dropped > 0)
-                incomplete.set(id, dropped);
-            if (mesh >= 0)
+            if (mesh >= 0) {
                 glb.place(below.length > 0 ? glb.addNode(node, '', null) : node, mesh, matrix);
-            if (mesh >= 0)
                 drawn.add(id);
+                if (dropped > 0)
+                    incomplete.set(id, dropped);
+            }
         }
         for (const child of below)
             add(child, node, within, depth + 1);
@@ -257,9 +257,9 @@ async function main([input, output, , , , encoding]) {
     const types = { product: webIfc.IFCPRODUCT, grid: webIfc.IFCGRIDPLACEMENT };
     const isShown = (element) => drawn.has(element) || NOT_SHOWN.has(model.classOf(element));
     const { lost, lines, ids, drawn: drawnInstead } = findLosses(model, webIfc.IFCPRODUCT, isShown, solids.failed);
-    const withoutPlace = [...geometry.unplaced.keys()].filter((element) => drawn.has(element));
+    const unplaced = new Map([...geometry.unplaced].filter(([element]) => drawn.has(element)));
     const wrongFaces = [webIfc.IFCPOLYGONALFACESET, webIfc.IFCTRIANGULATEDFACESET].flatMap((type) => wrongIndices(model, type));
-    askForSolids(join(dirname(output), 'asked.txt'), [...ids, ...withoutPlace, ...incomplete.keys(),
+    askForSolids(join(dirname(output), 'asked.txt'), [...ids, ...unplaced.keys(), ...incomplete.keys(),
         ...findDamaged(model, webIfc.IFCPRODUCT, new Set([...errors.at(), ...wrongFaces])),
         ...uncut.flatMap(({ opening, elements }) => [opening, ...elements])]);
     if (drawn.size > 0)
@@ -268,11 +268,10 @@ async function main([input, output, , , , encoding]) {
     process.stdout.write([`${schema}: ${drawn.size} elements with a shape, ${lost.length} lost, ${storeys} storeys, ${openings} openings ` +
         `cut; ${solids.elements.size} elements by Open CASCADE; of the others circles have ${CORNERS} corners (--chord does not apply)`,
     ...lines.length > 0 ? [`not shown: ${lines.length} elements that consist only of lines or points: ${
-        lines.slice(0, MAX_NAMED).join(', ')}${
-        lines.length > MAX_NAMED ? ', ...' : ''}`.replace(/[\t\n]/g, ' ')] : [],
-    ...lost, ...partlyLostLines(model, withoutPlace.map((element) => [element, geometry.unplaced.get(element).length]), incomplete),
-    ...wrongIndexLines(model, webIfc.IFCPRODUCT, wrongFaces, solids), ...openingLines(model, uncut), ...drawnInstead,
-    ...misplacedLines(model, types, isShown, solids.failed), ...errors.lines(model, solids), ''].join('\n'));
+        listed(lines)}`.replace(/[\t\n]/g, ' ')] : [],
+    ...lost, ...partlyLostLines(model, unplaced, incomplete), ...wrongIndexLines(model, webIfc.IFCPRODUCT, wrongFaces, solids),
+    ...openingLines(model, uncut), ...drawnInstead, ...misplacedLines(model, types, isShown, solids.failed),
+    ...errors.lines(model, solids), ''].join('\n'));
     if (drawn.size === 0)
         throw new Error(`the IFC file contains no surface${lost.length > 0 ? `: ${lost.length} elements have no triangles, such as ` +
             lost[0].split('\t').slice(1).join(', ') : ''}`);

@@ -6,7 +6,14 @@ const REFERENCE = 5; // web-ifc's type code for a value that refers to a stateme
 // describes.
 export const fields = (...values) => values.map((value) => String(value).replace(/\s+/g, ' ').trim()).join('\t');
 const GRID = 'IfcGridPlacement';
-const MAX_IDS = 20; // maximum number of IFC statement ids listed per kind of error
+const MAX_LISTED = 20;
+
+// Joins texts to a list, which is cut after MAX_LISTED texts.
+export const listed = (texts, separator = ', ') =>
+    [...texts.slice(0, MAX_LISTED), ...texts.length > MAX_LISTED ? ['...'] : []].join(separator);
+
+const elementText = (model, id) =>
+    `#${id} ${model.nameOf(id)} (${model.classOf(id)}, ${model.line(id)?.GlobalId?.value ?? 'no GUID'})`;
 
 // Returns the ids of the given IFC statements and of all statements that they refer to, directly or indirectly.
 function reached(model, ids) {
@@ -42,8 +49,7 @@ export function collectErrors() {
         const instead = reached(model, built), left = [...found].map(([text, ids]) =>
             [text, ids.filter((id) => !instead.has(id)), ids.length > 0]);
         return left.filter(([, ids, numbered]) => ids.length > 0 || !numbered).map(([text, ids]) =>
-            fields('error', Math.max(ids.length, 1), `web-ifc: ${text} ${
-                [...ids.slice(0, MAX_IDS).map((id) => `#${id}`), ...ids.length > MAX_IDS ? ['...'] : []].join(' ')}`));
+            fields('error', Math.max(ids.length, 1), `web-ifc: ${text} ${listed(ids.map((id) => `#${id}`), ' ')}`));
     };
     return { stop: () => Object.assign(console, { log, error }), at: () => new Set([...found.values()].flat()), lines };
 }
@@ -95,7 +101,7 @@ export function wrongIndexLines(model, product, sets, solids) {
     const refused = [...solids.failed.keys()].filter((id) => !model.line(id)?.GlobalId);
     const others = reached(model, [...builtItems(solids), ...refused]), ids = sets.filter((id) => drawn.has(id) && !others.has(id));
     return ids.length === 0 ? [] : [fields('error', ids.length, `a face has an index outside the list of points: ${
-        [...ids.slice(0, MAX_IDS).map((id) => `#${id} ${model.classOf(id)}`), ...ids.length > MAX_IDS ? ['...'] : []].join(', ')}`)];
+        listed(ids.map((id) => `#${id} ${model.classOf(id)}`))}`)];
 }
 
 // Returns the elements whose shapes contain statements with web-ifc errors.
@@ -140,14 +146,13 @@ export function findLosses(model, product, isShown, failed) {
 }
 
 // Returns lines of the reader's output (format: error records of findings.h) that name elements shown without some of their
-// parts or triangles. unplaced: pairs of an element and its number of parts that have no place. incomplete: by element id, the
-// number of triangles that are left out.
+// parts or triangles. unplaced: by element id, its parts that have no place. incomplete: by element id, the number of triangles that
+// are left out.
 export function partlyLostLines(model, unplaced, incomplete) {
-    const named = (id) => `#${id} ${model.nameOf(id)} (${model.classOf(id)}, ${model.line(id)?.GlobalId?.value ?? 'no GUID'})`;
-    return [...unplaced.map(([id, count]) => fields('error', count,
-        `parts of ${named(id)} are not shown, because their placement is invalid: export the model again`)),
+    return [...[...unplaced].map(([id, parts]) => fields('error', parts.length,
+        `parts of ${elementText(model, id)} are not shown, because their placement is invalid: export the model again`)),
     ...[...incomplete].map(([id, count]) => fields('error', count,
-        `triangles of ${named(id)} are not shown, because their coordinates are missing, infinite or not numbers`))];
+        `triangles of ${elementText(model, id)} are not shown, because their coordinates are missing, infinite or not numbers`))];
 }
 
 // Returns lines of the reader's output that name the misplaced elements, whose grid placement could not be computed. Format:
@@ -164,10 +169,9 @@ export function misplacedLines(model, { product, grid }, isShown, failed) {
         if (!place || seen.has(place) || !line.Representation || !isShown(id))
             continue;
         const why = failed.get(place) ?? 'built without Open CASCADE';
-        const guid = line.GlobalId?.value ?? 'no GUID';
-        found.set(why, [...found.get(why) ?? [], `#${id} ${model.nameOf(id)} (${model.classOf(id)}, ${guid})`]);
+        found.set(why, [...found.get(why) ?? [], elementText(model, id)]);
     }
     return [...found].map(([why, names]) => fields('error', names.length,
         `elements shown at a wrong place, because a grid placement is not computed (${why}): ${
-            names.slice(0, MAX_IDS).join(', ')}${names.length > MAX_IDS ? ', ...' : ''}`));
+            listed(names)}`));
 }
