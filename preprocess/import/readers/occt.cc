@@ -324,9 +324,8 @@ bool has_length_unit(const Handle(StepRepr_RepresentationContext) & context)
     return !units.IsNull() && factors.LengthDone();
 }
 
-/* Returns the length units of a STEP file's products at the top. Prints an error if the context of any shape states none: Open CASCADE
- * then takes the shape to be in millimetres. named: name of the file for the error, or "". */
-std::string length_units(STEPControl_Reader *reader, const std::string &named)
+/* Returns the length units of a STEP file's products at the top. */
+std::string length_units(STEPControl_Reader *reader)
 {
     TColStd_SequenceOfAsciiString lengths, angles, solid_angles;
     std::string units;
@@ -334,7 +333,13 @@ std::string length_units(STEPControl_Reader *reader, const std::string &named)
     for (int i = 1; i <= lengths.Length(); i++)
         if (units.find(lengths.Value(i).ToCString()) == std::string::npos)
             units += (units.empty() ? "" : ", ") + std::string(lengths.Value(i).ToCString());
-    const Handle(Interface_InterfaceModel) &model = reader->WS()->Model();
+    return units;
+}
+
+/* Prints an error if the context of any shape states no unit of length: Open CASCADE then takes the shape to be in millimetres.
+ * prefix: begins the error. */
+void say_missing_units(const Handle(Interface_InterfaceModel) & model, const std::string &prefix)
+{
     bool missing = false;
     for (int i = 1; i <= model->NbEntities() && !missing; i++) {
         Handle(StepShape_ShapeRepresentation) shape = Handle(StepShape_ShapeRepresentation)::DownCast(model->Value(i));
@@ -344,8 +349,7 @@ std::string length_units(STEPControl_Reader *reader, const std::string &named)
     if (missing)
         printf("error\t1\t%sthe file states no unit of length for some or all shapes: assuming mm; if that is wrong, state the unit in "
                "the CAD program and export the model again\n",
-               named.c_str());
-    return units;
+               prefix.c_str());
 }
 
 /* Reads a STEP file into the XCAF document. Returns the file's length units. */
@@ -359,16 +363,17 @@ std::string read_step(const char *path, const char *output, Handle(TDocStd_Docum
     step.SetLayerMode(Standard_True);
     if (step.ReadFile(files.main.c_str()) != IFSelect_RetDone)
         refuse("this is not a STEP file, or the file is truncated");
-    const std::string units = length_units(&step.ChangeReader(), "");
+    const std::string units = length_units(&step.ChangeReader());
+    say_missing_units(step.Reader().WS()->Model(), "");
     bool transferred = step.Transfer(document);
     occt_losses_say(step.Reader().WS(), "");
     for (NCollection_DataMap<TCollection_AsciiString, Handle(STEPCAFControl_ExternFile)>::Iterator each(step.ExternFiles()); each.More();
          each.Next()) {
         auto file = files.externals.find(each.Key().ToCString());
         if (file != files.externals.end() && !each.Value()->GetWS().IsNull() && each.Value()->GetLoadStatus() == IFSelect_RetDone) {
-            occt_losses_say(each.Value()->GetWS(), file->second.named + ": ");
-            STEPControl_Reader part(each.Value()->GetWS(), Standard_False); /* forgets the part's losses */
-            length_units(&part, one_line(file->second.named) + ": ");
+            const std::string prefix = one_line(file->second.named) + ": ";
+            occt_losses_say(each.Value()->GetWS(), prefix);
+            say_missing_units(each.Value()->GetWS()->Model(), prefix);
         }
     }
     for (const std::string &copy : files.copies)
