@@ -181,24 +181,28 @@ static bool has_other_ancestor(const struct asset_patterns *patterns, const char
     return false;
 }
 
-/* Returns whether the ancestors of a node of the new model match a path pattern, whatever the node's own name is. */
-static bool ancestors_match(struct asset_patterns *patterns, const char *pattern, uint32_t node)
+/* Returns flags of the nodes of the new model whose ancestors match a path pattern, whatever the nodes' own names are. */
+static bool *find_below(struct asset_patterns *patterns, const char *pattern)
 {
+    bool *below = mem_array(patterns->after->count + 1, sizeof(*below));
     char *any = mem_printf("%.*s*", (int)(strrchr(pattern, '/') + 1 - pattern), pattern);
     size_t count = find(patterns, patterns->after, patterns->new_names, any);
-    bool match = false;
     for (size_t i = 0; i < count; i++)
-        match |= patterns->found[i] == node;
+        below[patterns->found[i]] = true;
     mem_free(any);
-    return match;
+    return below;
 }
 
-/* Returns whether a node that moved away from the ancestors that a path pattern names now belongs to another asset. */
-static bool has_left(struct asset_patterns *patterns, const char *pattern, uint32_t node)
+/* Returns whether a node that moved away from the ancestors that a path pattern names now belongs to another asset. *below keeps the
+ * result of find_below() for the next node of the pattern; NULL at first. The caller frees it. */
+static bool has_left(struct asset_patterns *patterns, const char *pattern, uint32_t node, bool **below)
 {
     int other = patterns->pairs->to_new[node];
-    return other >= 0 && patterns->gained[other] && is_path(pattern, patterns->before->nodes[node].name) &&
-           has_other_ancestor(patterns, pattern, node) && !ancestors_match(patterns, pattern, (uint32_t)other);
+    if (other < 0 || !patterns->gained[other] || !is_path(pattern, patterns->before->nodes[node].name) ||
+        !has_other_ancestor(patterns, pattern, node))
+        return false;
+    *below = *below ? *below : find_below(patterns, pattern);
+    return !(*below)[other];
 }
 
 /* Adds the patterns that match, in the new model, the counterparts of all nodes that `pattern` matches in the old model: the pattern
@@ -208,7 +212,7 @@ static void follow_several(struct asset_patterns *patterns, const char *pattern,
 {
     size_t old_count = find(patterns, patterns->before, patterns->old_names, pattern);
     uint32_t *olds = mem_array(old_count, sizeof(*olds));
-    bool *matched = mem_array(patterns->after->count + 1, sizeof(*matched));
+    bool *matched = mem_array(patterns->after->count + 1, sizeof(*matched)), *below = NULL;
     memcpy(olds, patterns->found, old_count * sizeof(*olds));
     size_t new_count = find(patterns, patterns->after, patterns->new_names, pattern);
     for (size_t i = 0; i < new_count; i++)
@@ -217,7 +221,7 @@ static void follow_several(struct asset_patterns *patterns, const char *pattern,
         add_line(out, sign, pattern);
     for (size_t i = 0; i < old_count; i++) {
         int other = patterns->pairs->to_new[olds[i]];
-        if (other < 0 || matched[other] || (!*sign && has_left(patterns, pattern, olds[i])))
+        if (other < 0 || matched[other] || (!*sign && has_left(patterns, pattern, olds[i], &below)))
             continue;
         char *exact = exact_pattern(patterns, (uint32_t)other);
         add_line(out, sign, exact);
@@ -226,6 +230,7 @@ static void follow_several(struct asset_patterns *patterns, const char *pattern,
     }
     mem_free(olds);
     mem_free(matched);
+    mem_free(below);
 }
 
 /* Returns what replaces one line of an asset's patterns: one pattern per line, or NULL if none matches a node of the new model. */
@@ -234,9 +239,12 @@ static char *follow_line(struct asset_patterns *patterns, const char *line)
     const char *sign = line[0] == '!' ? "!" : "", *pattern = line + strlen(sign);
     struct text out = { 0 };
     char *other = NULL;
+    bool *below = NULL;
     int node;
     size_t old_count = find(patterns, patterns->before, patterns->old_names, pattern);
-    if (old_count > 1 || (old_count == 1 && !*sign && has_left(patterns, pattern, patterns->found[0]))) {
+    bool has_moved = old_count == 1 && !*sign && has_left(patterns, pattern, patterns->found[0], &below);
+    mem_free(below);
+    if (old_count > 1 || has_moved) {
         follow_several(patterns, pattern, sign, &out);
         return out.at;
     }
