@@ -32,6 +32,14 @@ const review = (folder) => rowsOf(join(folder, 'review.csv'))
 const filesOf = (folder) => Object.fromEntries(readdirSync(folder, { withFileTypes: true })
     .filter((entry) => entry.isFile()).map(({ name }) => [name, readFileSync(join(folder, name)).toString('base64')]));
 
+// Writes a plant file with a group of temperatures. assets: the text of each asset's entry, without braces.
+const writePlant = (plant, ...assets) => writeFileSync(join(plant, 'plant.yaml'), `plant: { name: revised }
+assets:
+${assets.map((asset) => `  - { ${asset} }\n`).join('')}groups:
+  - { id: temperature, unit: °C, min: 0, max: 100 }
+tags: tags.csv
+`);
+
 // Writes a changed CAD export: the pump 1101 is moved, a copy of it is added as 1102, another pump is renamed, and a pipe and a
 // part of a tank are removed.
 function revise(folder) {
@@ -192,14 +200,7 @@ test('a name that occurs several times in a model moves no tag to other equipmen
     { scene: Object.keys(places).map((_, i) => 2 * i) })));
     skids({ A: 0, B: 5, D: 10 });
     good(run('plantcast', 'import', model, '-o', plant));
-    writeFileSync(join(plant, 'plant.yaml'), `plant: { name: skids }
-assets:
-  - { id: PUMP-A, model: m.glb, nodes: "Skid A/Pump" }
-  - { id: PUMP-B, model: m.glb, nodes: "Skid B/Pump" }
-groups:
-  - { id: temperature, unit: °C, min: 0, max: 100 }
-tags: tags.csv
-`);
+    writePlant(plant, 'id: PUMP-A, model: m.glb, nodes: "Skid A/Pump"', 'id: PUMP-B, model: m.glb, nodes: "Skid B/Pump"');
     writeFileSync(list, 'Tag Name;Group;Asset;Node;Place;X;Y;Z\nTE-A;temperature;PUMP-A;;;0.5;0;1\nTE-B;temperature;PUMP-B;;;5.5;0;1\n');
     // Skid A is removed, and a new Skid C stands elsewhere: its pump is not the pump of Skid A.
     skids({ B: 5, C: 55, D: 10 });
@@ -222,13 +223,7 @@ test('an asset whose pattern selects several nodes keeps them all when they are 
         const model = join(folder, 'm.gltf'), plant = mkdtempSync(join(folder, 'plant-')), list = join(plant, 'tags.csv');
         boxes(model, pipes(four));
         good(run('plantcast', 'import', model, '-o', plant));
-        writeFileSync(join(plant, 'plant.yaml'), `plant: { name: pipes }
-assets:
-  - { id: PIPES, model: m.glb, ${nodes} }
-groups:
-  - { id: temperature, unit: °C, min: 0, max: 100 }
-tags: tags.csv
-`);
+        writePlant(plant, `id: PIPES, model: m.glb, ${nodes}`);
         writeFileSync(list, tags);
         boxes(model, pipes(names));
         good(run('plantcast', 'import', model, '-o', plant));
@@ -292,14 +287,7 @@ test('a path pattern decides which asset a node belongs to that moves to another
         const plant = mkdtempSync(join(folder, 'plant-'));
         units(was);
         good(run('plantcast', 'import', model, '-o', plant));
-        writeFileSync(join(plant, 'plant.yaml'), `plant: { name: units }
-assets:
-  - { id: U1, model: m.glb, nodes: ${JSON.stringify(first)} }
-  - { id: U2, model: m.glb, nodes: "Unit 2/*" }
-groups:
-  - { id: temperature, unit: °C, min: 0, max: 100 }
-tags: tags.csv
-`);
+        writePlant(plant, `id: U1, model: m.glb, nodes: ${JSON.stringify(first)}`, 'id: U2, model: m.glb, nodes: "Unit 2/*"');
         units(is);
         good(run('plantcast', 'import', model, '-o', plant));
         const text = readFileSync(join(plant, 'plant.yaml'), 'utf8'), now = /id: U1, model: m.glb, nodes: (.*) \}/.exec(text);
