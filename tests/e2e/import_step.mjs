@@ -20,6 +20,9 @@ const notBuilt = existsSync(join(BIN, 'plantcast-import-occt')) && existsSync(SA
 const skip = absent.length > 0 ? `not built: ${absent.join(', ')}` : notBuilt;
 const plantcast = (...args) => spawnSync(join(BIN, 'plantcast'), args, { encoding: 'utf8', timeout: 120000 });
 
+// Returns the name of a model without its ending and without .gz.
+const stemOf = (file) => file.replace(/\.\w+(\.gz)?$/, '');
+
 const withSamples = (f) => inFolder((folder) => {
     assert.equal(spawnSync(SAMPLES, [folder], { timeout: 60000 }).status, 0);
     return f(folder);
@@ -41,7 +44,7 @@ for (const { file, unit } of [{ file: 'skid_203.step', unit: 'millimetre' }, { f
         assert.match(said.stdout, new RegExp(`units: ${unit}`, 'i'));
         const glb = join(folder, 'plant', file.replace(/\.\w+$/, '.glb'));
         const { list } = JSON.parse(plantcast('nodes', glb, '--json').stdout);
-        const stem = file.replace(/\.\w+(\.gz)?$/, '');
+        const stem = stemOf(file);
         assert.equal(list.length, 15);
         assert.deepEqual(list.slice(0, 4).map(({ name }) => name), [stem, 'Skid S-100', 'Plate:1', 'P-101A']);
         const pump = list.find(({ name }) => name === '펌프/P-101B'), motor = list.find(({ path }) => path.endsWith('P-101B/Motor:1'));
@@ -74,7 +77,7 @@ test('--chord refines the triangles, --up y turns the model, and --units is refu
 
 for (const { file, unit } of [{ file: 'tree.igs', unit: 'millimetre' }, { file: 'inches.IGES', unit: 'inch' }])
     test(`${file}: tree, names, sizes, colours and shared parts are imported`, { skip }, () => withSamples((folder) => {
-        const said = plantcast('import', join(folder, file), '-o', join(folder, 'plant')), stem = file.replace(/\.\w+(\.gz)?$/, '');
+        const said = plantcast('import', join(folder, file), '-o', join(folder, 'plant')), stem = stemOf(file);
         assert.equal(said.status, 0, said.stderr);
         assert.match(said.stdout, /5 parts in 13 places; chord error 1 mm; Z axis up/);
         assert.match(said.stdout, new RegExp(`units: ${unit}`));
@@ -119,7 +122,7 @@ test('parts of a compressed assembly are found; compressed parts are named as mi
     writeFileSync(join(folder, 'plain.stp'), assembly(['bolt.stp', 'BOLT.Stp', 'nut.stp.gz', 'PLAIN.stp']));
     for (const name of ['line.stp.gz', 'plain.stp']) {
         const { out, errors } = imported(folder, name);
-        assert.match(out, /2 parts in 2 places|1 parts in 2 places/);
+        assert.match(out, / 1 parts in 2 places/);
         assert.deepEqual(errors, [{ count: 1,
             text: 'the model refers to file nut.stp.gz, which is not in the model\'s folder, so its parts are not shown' }], out);
     }
@@ -142,7 +145,7 @@ function imported(folder, name) {
     const plant = join(folder, 'imported'), report = join(folder, 'report.json');
     const { status, stdout, stderr } = plantcast('import', join(folder, name), '-o', plant, '--report', report, '--chord', '0.2');
     const [found] = JSON.parse(readFileSync(report)).models;
-    const shown = status === 0 ? volumeOf(join(plant, `${name.replace(/\.\w+(\.gz)?$/, '')}.glb`)) : { area: 0, size: [0, 0, 0] };
+    const shown = status === 0 ? volumeOf(join(plant, `${stemOf(name)}.glb`)) : { area: 0, size: [0, 0, 0] };
     rmSync(plant, { recursive: true, force: true });
     return { ...found, ...shown, status, out: `${stdout}${stderr}` };
 }
