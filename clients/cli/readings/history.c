@@ -222,16 +222,18 @@ static int run_export(const struct history_options *options, const struct plant 
         return 1;
     struct history_reader *reader = history_reader_create(log, folder);
     history_reader_show_by(reader, plant);
-    int was_buckets = -1;
+    int was_buckets = -1, count = 0;
     bool good = true;
     for (char *tag; !ferror(stdout) && (tag = strsep(&rest, separators));) {
         int index = plant_find_tag(plant, tag);
-        if (*tag && index < 0)
+        if (!*tag)
+            continue;
+        count++;
+        if (index < 0)
             fprintf(stderr, "plantcast: %s: the plant has no tag '%s'\n", options->plant, tag);
-        if (*tag)
-            good = index >= 0 && export_tag(reader, &plant->tags[index], from_us, to_us, options->points, &was_buckets) && good;
+        good = index >= 0 && export_tag(reader, &plant->tags[index], from_us, to_us, options->points, &was_buckets) && good;
     }
-    if (was_buckets < 0 && good) {
+    if (count == 0) {
         fprintf(stderr, "plantcast: --tags %s: this list has no tag names\n", options->tags);
         good = false;
     }
