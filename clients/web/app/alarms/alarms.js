@@ -377,7 +377,8 @@ export class AlarmList {
         const back = this.session.recorded && row.us !== null ? [momentButton(() => this.showMoment(row))] : [];
         return rowOf(this.session, row, this.overlay.fresh, {
             look: { class: row.waiting ? 'calls' : state, 'data-alarm': row.id, 'data-kind': kind },
-            pick: this.can(row) && row.others ? choose : null, state: sayIfKnown(`short.${state}`, say(`state.${state}`)), note: this.noteOf(row),
+            pick: this.can(row) && row.others ? choose : null,
+            state: sayIfKnown(`short.${state}`, say(`state.${state}`)), note: this.noteOf(row),
             also: this.alsoOf(row), buttons: [...back, ...buttons], fly: (one) => this.flyTo(one),
         });
     }
