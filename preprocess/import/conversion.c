@@ -456,7 +456,8 @@ static bool read_model(const struct import_format *format, const char *path, con
     child_paths_add(&paths, own, CONFINE_WRITE);
     if (good && format->beside) {
         child_paths_add_beside(&paths, input, format->beside);
-        child_paths_link_beside(beside, input, format->beside); /* after unpacking, which would write through a link of the same name */
+        if (format->linked)
+            child_paths_link_beside(beside, input, format->beside); /* after unpacking, which would write through a link of the same name */
     }
     if (good)
         good = format->reader == FORMAT_PROGRAM ? run_program(&reading, &paths, said, why)

@@ -19,17 +19,17 @@
 #define OF_GLTF ".bin .buffer .dat .png .jpg .jpeg .webp .ktx .ktx2 .basis .dds .gif .bmp .tga .tif .tiff .exr .hdr"
 
 static const struct import_format formats[] = {
-    { "glTF", ".glb .gltf", FORMAT_GLTF, NULL, NULL, NULL, OF_GLTF, true, true },
-    { "RVM", ".rvm", FORMAT_RVM, NULL, NULL, NULL, NULL, false, false },
-    { "STEP", ".step .stp .p21 .stpz", FORMAT_PROGRAM, BY_OCCT, ".step .stp .p21", false, true },
-    { "IGES", ".iges .igs", FORMAT_PROGRAM, BY_OCCT, NULL, false, true },
-    { "IFC", ".ifc .ifczip", FORMAT_PROGRAM, BY_WEB_IFC, NULL, false, false },
-    { "OBJ", ".obj", FORMAT_PROGRAM, BY_ASSIMP, ".mtl", true, true },
-    { "STL", ".stl", FORMAT_PROGRAM, BY_ASSIMP, NULL, true, true },
-    { "PLY", ".ply", FORMAT_PROGRAM, BY_ASSIMP, NULL, true, true },
-    { "FBX", ".fbx", FORMAT_PROGRAM, BY_ASSIMP, NULL, false, false },
-    { "COLLADA", ".dae .zae", FORMAT_PROGRAM, BY_ASSIMP, NULL, false, false },
-    { "3DS", ".3ds", FORMAT_PROGRAM, BY_ASSIMP, NULL, true, false },
+    { "glTF", ".glb .gltf", FORMAT_GLTF, NULL, NULL, NULL, OF_GLTF, false, true, true },
+    { "RVM", ".rvm", FORMAT_RVM, NULL, NULL, NULL, NULL, false, false, false },
+    { "STEP", ".step .stp .p21 .stpz", FORMAT_PROGRAM, BY_OCCT, ".step .stp .p21", true, false, true },
+    { "IGES", ".iges .igs", FORMAT_PROGRAM, BY_OCCT, NULL, false, false, true },
+    { "IFC", ".ifc .ifczip", FORMAT_PROGRAM, BY_WEB_IFC, NULL, false, false, false },
+    { "OBJ", ".obj", FORMAT_PROGRAM, BY_ASSIMP, ".mtl", false, true, true },
+    { "STL", ".stl", FORMAT_PROGRAM, BY_ASSIMP, NULL, false, true, true },
+    { "PLY", ".ply", FORMAT_PROGRAM, BY_ASSIMP, NULL, false, true, true },
+    { "FBX", ".fbx", FORMAT_PROGRAM, BY_ASSIMP, NULL, false, false, false },
+    { "COLLADA", ".dae .zae", FORMAT_PROGRAM, BY_ASSIMP, NULL, false, false, false },
+    { "3DS", ".3ds", FORMAT_PROGRAM, BY_ASSIMP, NULL, false, true, false },
 };
 enum { FORMATS = sizeof(formats) / sizeof(formats[0]) };
 
