@@ -53,7 +53,7 @@ static void print_usage(FILE *out)
           "review.csv then lists what was added, removed, moved or renamed, and which tags lost their position.\n"
           "\n"
           "  MODEL             CAD export, in one of these formats:\n"
-          "                    glTF (.glb .gltf), STEP (.step .stp .stpz), IGES (.iges .igs), IFC (.ifc .ifczip),\n"
+          "                    glTF (.glb .gltf), STEP (.step .stp .p21 .stpz), IGES (.iges .igs), IFC (.ifc .ifczip),\n"
           "                    meshes (.obj .stl .ply .fbx .dae .zae .3ds), RVM of AVEVA PDMS, E3D or Marine (.rvm;\n"
           "                    its attributes are in a file of the same name with the ending .att or .txt)\n"
           "                    Files of all formats but glTF may be compressed with gzip (.stp.gz)\n"
