@@ -5,6 +5,8 @@ import { test } from 'node:test';
 import { listenToInput } from '../../clients/web/app/input/input.js';
 import { Gestures, wheelZoom } from '../../clients/web/core/gestures.js';
 import { HeldKeys, HOLD_S, keyMeaning, TAP_S } from '../../clients/web/core/keys.js';
+import { askAnchor, askPick } from '../../clients/web/core/requests.js';
+import { makeSession, vector } from './fixtures.mjs';
 
 const touch = (id, x, y, time = 0) => ({ id, x, y, time, kind: 'touch' });
 
@@ -142,4 +144,25 @@ test('input from before the camera controller loaded: only a drag that lasts or 
     assert.deepEqual(await toldOf(['pointerdown', 5000], ['pointerup', 4000], ['pointermove', 100]), ['pointermove']);
     assert.deepEqual(await toldOf(['wheel', 4000]), []);
     delete globalThis.document;
+});
+
+test('a wheel turn does not replace the unanswered request of a measuring click', () => {
+    const { connection, session, sockets } = makeSession();
+    connection.start();
+    sockets[0].accept();
+    sockets[0].say(vector('server/welcome.json'));
+    session.picture = { camera: session.camera };
+    const heard = [];
+    session.on('picked', ({ purpose }) => heard.push(purpose));
+    const answer = () => sockets[0].say({ type: 'picked', seq: session.pickSeq, asset: null, position: null });
+    askPick(session, [5, 5], 'measure');
+    askAnchor(session, [1, 2]);
+    answer();
+    askAnchor(session, [1, 2]);
+    answer();
+    assert.deepEqual(heard, ['measure', 'anchor']);
+    askPick(session, [5, 5], 'measure');
+    askAnchor(session, [1, 2], session.pickedAt + 4000);
+    answer();
+    assert.equal(heard[2], 'anchor', 'a lost answer delays the anchor for 3 s only');
 });

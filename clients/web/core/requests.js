@@ -49,9 +49,16 @@ export function travel(session, atUs, speed = 0) {
 export function askPick(session, [x, y], purpose, camera = null) {
     if (!session.welcomed || !session.picture)
         return;
-    session.pickPurpose = purpose;
+    Object.assign(session, { pickPurpose: purpose, pickedAt: performance.now() });
     const from = camera ?? asAsked(session.picture.camera);
     session.connection.send({ type: 'pick', seq: ++session.pickSeq, x, y, camera: cameraMessage(from) });
+}
+
+// Asks the server what is at a pixel, the centre of the user's next camera moves. Asks nothing while the answer to a click that no module
+// repeats is due, because the session would ignore that answer.
+export function askAnchor(session, pixel, now = performance.now()) {
+    if (!['measure', 'placing'].includes(session.pickPurpose) || now - session.pickedAt >= REPEAT_MS)
+        askPick(session, pixel, 'anchor');
 }
 
 // Asks the server what is at a point of the plant, which may be outside the picture. Sends the pixel in the middle of the half, and the

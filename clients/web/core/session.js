@@ -602,8 +602,11 @@ const HANDLERS = {
     },
 
     picked(message) {
-        if (message.seq === this.pickSeq)
-            this.emit('picked', { ...message, purpose: this.pickPurpose });
+        if (message.seq !== this.pickSeq)
+            return;
+        const purpose = this.pickPurpose;
+        this.pickPurpose = null; // answered
+        this.emit('picked', { ...message, purpose });
     },
 
     alarms(message) {

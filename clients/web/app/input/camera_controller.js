@@ -7,7 +7,7 @@ import { Gestures, wheelZoom } from '../../core/gestures.js';
 import { HeldKeys, keyMeaning } from '../../core/keys.js';
 import { depthAt, depthOf, elevation, fit, lookAround, orbit, pan, sight, zoom, zoomLimits } from '../../core/camera_moves.js';
 import { halfAt } from '../../core/nearest.js';
-import { askPick } from '../../core/requests.js';
+import { askAnchor } from '../../core/requests.js';
 import { along, length, subtract } from '../../core/vector.js';
 import { Approach } from './approach.js';
 import { clock } from '../common/clock.js';
@@ -94,7 +94,7 @@ export class CameraController {
         const { half, at, depth } = this.under(camera, x, y);
         const { origin, direction } = sight(camera, at, y, half.width, this.viewport.height);
         this.anchor = { x, y, time, point: depth === null ? null : along(origin, direction, depth) };
-        askPick(this.session, this.viewport.pixelOf(x, y), 'anchor');
+        askAnchor(this.session, this.viewport.pixelOf(x, y));
     }
 
     // Returns which half of a split view is under the pointer, the position in that half, and the depth of the nearest bounding box there
