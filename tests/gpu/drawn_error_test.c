@@ -818,12 +818,42 @@ static void make_pair(struct test_shape *shape, double (*places)[3])
     }
 }
 
-/* Returns how much nearer the picked point is to the Bad sensor than to the good one, in metres. */
-static double lacking_m(const struct drawn_error_case *site, const struct pick *pick)
+#define BORDER_M 0.05 /* places nearer to the border of the data are not counted */
+
+struct border_tally {
+    int beyond;  /* places without data */
+    int painted; /* of these, places shown with a colour and without a mark */
+    int within;  /* places with data that are shown with a colour and without a mark */
+};
+
+/* Draws a picture and adds random places in it to *tally. beyond_m: returns how far a place is beyond the border of the data, in metres;
+   negative: within. */
+static void tally_border(struct stand *stand, const struct view *view, double (*beyond_m)(const struct pick *pick, const void *arg),
+                         const void *arg, struct border_tally *tally)
+{
+    float(*measured)[4] = mem_array(PIXELS, sizeof(*measured));
+    assert_true(renderer_measure(stand->renderer, view, stand->snapshot, true, measured));
+    for (int i = 0; i < PICKS; i++) {
+        int x = (int)between(0, WIDTH_PX), y = (int)between(0, HEIGHT_PX);
+        const float *pixel = measured[y * WIDTH_PX + x];
+        struct pick pick;
+        pick_at(&stand->toy->scene, stand->field, view, stand->snapshot, x + 0.5, y + 0.5, &pick);
+        if (pick.asset < 0 || pixel[1] < 0)
+            continue;
+        bool shown = pixel[1] <= 0.5f && pixel[2] <= 0.5f, is_beyond = beyond_m(&pick, arg) > BORDER_M;
+        tally->beyond += is_beyond;
+        tally->painted += is_beyond && shown;
+        tally->within += beyond_m(&pick, arg) < -BORDER_M && shown;
+    }
+    mem_free(measured);
+}
+
+/* Returns how much nearer the picked point is to the second sensor of its asset than to the first, in metres. */
+static double nearer_to_second_m(const struct pick *pick, const void *scene)
 {
     double away_m[2] = { 0 };
     for (int i = 0; i < 2; i++) {
-        const struct scene_sensor *sensor = &site->scene->assets[pick->asset].sensors[i];
+        const struct scene_sensor *sensor = &((const struct scene *)scene)->assets[pick->asset].sensors[i];
         for (int c = 0; c < 3; c++)
             away_m[i] = hypot(away_m[i], pick->position_m[c] - sensor->surface_m[c]);
     }
@@ -834,7 +864,7 @@ static double lacking_m(const struct drawn_error_case *site, const struct pick *
    Pictures must show that, or mark the place as uncertain, although all values are equal. */
 TEST(test_a_lost_sensor_keeps_its_place)
 {
-    int nearer = 0, painted = 0, unmarked = 0;
+    struct border_tally tally = { 0 };
     random_state = sweep_seed();
     for (int round = 0; round < sweep(12, 3); round++) {
         struct toy *toy = toy_create();
@@ -842,44 +872,38 @@ TEST(test_a_lost_sensor_keeps_its_place)
         struct stand stand;
         struct view view;
         double places[2][3];
-        float(*measured)[4] = mem_array(PIXELS, sizeof(*measured));
         make_pair(&shape, places);
         toy_add(toy, "PLATE", &shape, (double[3]){ 0, 0, 0 }, (const double(*)[3])places, 2);
         stand_init(&stand, &rig, toy);
         toy_set(stand.snapshot, 0, 50, QUALITY_GOOD);
         toy_set(stand.snapshot, 1, 50, QUALITY_BAD_COMMUNICATION_ERROR);
-        struct drawn_error_case site = { &toy->scene, stand.field, stand.renderer, stand.snapshot };
         view_default(&toy->scene, WIDTH_PX, HEIGHT_PX, &view);
         view.field.distance = DISTANCE_GEODESIC;
         look(&toy->scene, &view);
-        assert_true(renderer_measure(stand.renderer, &view, stand.snapshot, true, measured));
-        for (int i = 0; i < PICKS; i++) {
-            int x = (int)between(0, WIDTH_PX), y = (int)between(0, HEIGHT_PX);
-            const float *pixel = measured[y * WIDTH_PX + x];
-            struct pick pick;
-            pick_at(&toy->scene, stand.field, &view, stand.snapshot, x + 0.5, y + 0.5, &pick);
-            if (pick.asset < 0 || pixel[1] < 0)
-                continue;
-            bool shown = pixel[1] <= 0.5f && pixel[2] <= 0.5f, is_nearer = lacking_m(&site, &pick) > 0.05;
-            nearer += is_nearer;
-            painted += is_nearer && shown;
-            unmarked += lacking_m(&site, &pick) < -0.05 && shown;
-        }
-        mem_free(measured);
+        tally_border(&stand, &view, nearer_to_second_m, &toy->scene, &tally);
         stand_finish(&stand);
     }
-    print_message("# %d places nearer to the Bad sensor, %d of them painted; %d places of the good sensor are unmarked\n", nearer, painted,
-                  unmarked);
-    assert_true(nearer > 300 && unmarked > 20);
-    assert_int_equal(painted, 0);
+    print_message("# %d places nearer to the Bad sensor, %d of them painted; %d places of the good sensor are unmarked\n", tally.beyond,
+                  tally.painted, tally.within);
+    assert_true(tally.beyond > 300 && tally.within > 20);
+    assert_int_equal(tally.painted, 0);
+}
+
+struct reach {
+    double x_m, y_m, reach_m;
+};
+
+static double beyond_reach_m(const struct pick *pick, const void *arg)
+{
+    const struct reach *reach = arg;
+    return hypot(pick->position_m[0] - reach->x_m, pick->position_m[1] - reach->y_m) - reach->reach_m;
 }
 
 /* One sensor with a limited reach stands on a plate of two triangles, which preparation did not cut, because all values are equal.
    Pictures must show that places beyond the reach have no data, or mark them as uncertain. */
 TEST(test_the_end_of_a_lone_reach_is_marked)
 {
-    const double reach_m = 1.2;
-    int beyond = 0, painted = 0, within = 0;
+    struct border_tally tally = { 0 };
     random_state = sweep_seed();
     for (int round = 0; round < sweep(12, 3); round++) {
         struct toy *toy = toy_create();
@@ -887,39 +911,26 @@ TEST(test_the_end_of_a_lone_reach_is_marked)
         struct stand stand;
         struct view view;
         double x_m = between(0.02, 0.1), y_m = between(0.02, 0.1), places[1][3] = { { x_m, y_m, 0.02 } };
-        float(*measured)[4] = mem_array(PIXELS, sizeof(*measured));
+        const struct reach reach = { x_m, y_m, 1.2 };
         shape_plate(&shape, TOY_STEEL, (double[3]){ 0 }, (double[3]){ SIDE_M, 0, 0 }, (double[3]){ 0, SIDE_M, 0 }, 1);
         shape_plate(&shape, TOY_STEEL, (double[3]){ -1, 0, 0 }, (double[3]){ 1, 0, 0 }, (double[3]){ 0, SIDE_M, 0 }, CELLS);
         shape_box(&shape, TOY_BLUE, (double[3]){ x_m - 0.01, y_m - 0.01, 0.01 }, (double[3]){ x_m + 0.01, y_m + 0.01, 0.02 });
         toy_add(toy, "PLATE", &shape, (double[3]){ 0, 0, 0 }, (const double(*)[3])places, 1);
-        toy->plant.groups[0].reach_m = reach_m;
+        toy->plant.groups[0].reach_m = reach.reach_m;
         toy->scene.assets[0].file->resolved_levels = UINT64_MAX;
         stand_init(&stand, &rig, toy);
         toy_set(stand.snapshot, 0, 50, QUALITY_GOOD);
         view_default(&toy->scene, WIDTH_PX, HEIGHT_PX, &view);
         view.field.distance = DISTANCE_GEODESIC;
-        view.field.reach_m = reach_m;
+        view.field.reach_m = reach.reach_m;
         look(&toy->scene, &view);
-        assert_true(renderer_measure(stand.renderer, &view, stand.snapshot, true, measured));
-        for (int i = 0; i < PICKS; i++) {
-            int x = (int)between(0, WIDTH_PX), y = (int)between(0, HEIGHT_PX);
-            const float *pixel = measured[y * WIDTH_PX + x];
-            struct pick pick;
-            pick_at(&toy->scene, stand.field, &view, stand.snapshot, x + 0.5, y + 0.5, &pick);
-            if (pick.asset < 0 || pixel[1] < 0)
-                continue;
-            bool shown = pixel[1] <= 0.5f && pixel[2] <= 0.5f;
-            double away_m = hypot(pick.position_m[0] - x_m, pick.position_m[1] - y_m);
-            beyond += away_m > reach_m + 0.05;
-            painted += away_m > reach_m + 0.05 && shown;
-            within += away_m < reach_m - 0.05 && shown;
-        }
-        mem_free(measured);
+        tally_border(&stand, &view, beyond_reach_m, &reach, &tally);
         stand_finish(&stand);
     }
-    print_message("# %d places beyond the reach, %d of them painted; %d places within it are unmarked\n", beyond, painted, within);
-    assert_true(beyond > 300 && within > 20);
-    assert_int_equal(painted, 0);
+    print_message("# %d places beyond the reach, %d of them painted; %d places within it are unmarked\n", tally.beyond, tally.painted,
+                  tally.within);
+    assert_true(tally.beyond > 300 && tally.within > 20);
+    assert_int_equal(tally.painted, 0);
 }
 
 /* --- what was found --------------------------------------------------------------------------------------------------------- */
