@@ -14,6 +14,7 @@ import { makeCertificate, opcuaOptions } from '../support/opcua.mjs';
 import { freePort } from '../support/ports.mjs';
 import { cpuMs } from '../support/processes.mjs';
 import { promise } from '../support/promise.mjs';
+import { sweep } from '../support/sweep.mjs';
 
 const options = opcuaOptions(180000);
 const ROWS = ['TI-1,nsu=urn:test:plant%3B1;s=TI-1,,°C,temperature,E-101,0.5,0,0,,,,,,'];
@@ -25,40 +26,34 @@ let server, plant;
 shareOpcua(options, (...made) => { [server, plant] = made; });
 const peakMb = () => Number(/VmHWM:\s+(\d+)/.exec(readFileSync(`/proc/${plant.daemon.child.pid}/status`, 'utf8'))[1]) / 1024;
 
-// Waits until the daemon has finished its warm-up, which takes time and memory on a busy machine.
+// Waits until the daemon has nothing to do.
 async function rest() {
     const taken = () => cpuMs(plant.daemon.child.pid);
     for (let before = -Infinity, end = performance.now() + 20000; taken() - before > 20 && performance.now() < end; await sleep(500))
         before = taken();
 }
 
-// Starts a daemon whose source is the server's port, whatever listens there, and waits until it has failed to read. Returns the
-// daemon's peak memory in MB minus `before`.
-async function meet(before = 0) {
-    await plant.start('security: none', ROWS);
-    await plant.said(/no readings \(/);
-    await rest();
-    return peakMb() - before;
-}
-
-test('a server that announces false sizes is disconnected, named, and costs no memory', options, async () => {
+test('a server that announces false sizes is disconnected, and costs no memory', options, async () => {
     const real = server.port;
     server.port = await freePort();
-    const before = await meet(); // peak memory of a daemon whose server does not listen, in MB, for comparison
-    await plant.daemon.stop();
-    for (const [name, lies] of Object.entries(LIES)) {
-        const liar = await tellLies(server.port, lies);
-        try {
-            let moreMb = await meet(before);
-            if (moreMb >= MOST_MB) { // measures again, because a busy machine may use more memory once; a real leak grows each time
-                await plant.daemon.stop();
-                moreMb = Math.min(moreMb, await meet(before));
-            }
-            assert.ok(liar.seen() > 0 && moreMb < MOST_MB, `${name}: memory grew by ${moreMb} MB`);
-        } finally {
-            await plant.daemon.stop();
+    // By default a daemon meets half of the liars, because its peak memory only grows, and its pauses between connections become longer.
+    // In a long run each liar meets a new daemon.
+    const all = Object.entries(LIES), half = all.length / 2;
+    for (const some of sweep(all.map((one) => [one]), [all.slice(0, half), all.slice(half)])) {
+        await plant.start('security: none', ROWS);
+        await plant.said(/no readings \(/);
+        await rest();
+        const before = peakMb();
+        for (const [name, lies] of some) {
+            const liar = await tellLies(server.port, lies);
+            for (const end = performance.now() + 30000; liar.seen() === 0; await sleep(50))
+                assert.ok(performance.now() < end, `${name}: the daemon does not connect`);
+            await rest();
             await liar.stop();
+            assert.equal(plant.daemon.child.exitCode, null, plant.daemon.said);
+            assert.ok(peakMb() - before < MOST_MB, `${name}: memory grew by ${peakMb() - before} MB`);
         }
+        await plant.daemon.stop();
     }
     server.port = real;
 });
@@ -120,15 +115,16 @@ test('a server with a long publishing interval is reported, and its loss is noti
     server.thaw();
 });
 
+const inDays = (days) => `${new Date(Date.now() + days * 86400e3).toISOString().replace(/[-:T]/g, '').slice(0, 14)}Z`;
 const clocks = { ...options, skip: options.skip || (missingClocks() ?? false) };
-for (const [off_s, word] of [[3600, 'ahead of'], [-3600, 'behind']])
+// The certificates are valid from that many days ago. The clock that is an hour behind is before their beginning: the daemon must connect
+// all the same.
+for (const [off_s, word, days] of [[3600, 'ahead of', 1], [-3600, 'behind', 1 / 48]])
     test(`readings from a server whose clock is an hour ${word} ours are used, its clock is not`, clocks, async () => {
-        const day = (days) => `${new Date(Date.now() + days * 86400e3).toISOString().replace(/[-:T]/g, '').slice(0, 14)}Z`;
-        for (const name of ['yesterday', 'client2'])
-            // valid from yesterday to tomorrow: by the daemon's clock, and by the server's, which is an hour off
-            makeCertificate(server.folder, name, { dates: [day(-1), day(1)] });
-        server.trust('yesterday');
-        await server.restart({ ahead_s: off_s, certificate: 'yesterday' });
+        for (const name of ['recent', 'client2'])
+            makeCertificate(server.folder, name, { dates: [inDays(-days), inDays(1)] });
+        server.trust('recent');
+        await server.restart({ ahead_s: off_s, certificate: 'recent' });
         const stale = ROWS[0].replace('TI-1', 'OLD').replace('s=TI-1', 's=TI-2').replace(/0\.5,0,0,,/, '0.5,0,0,60,');
         await plant.run(server.security('', 'client2'), [...ROWS, stale]);
         await server.set('TI-1', 34);
@@ -140,26 +136,13 @@ for (const [off_s, word] of [[3600, 'ahead of'], [-3600, 'behind']])
         assert.equal(plant.daemon.said.match(/timestamps are/g).length, 1, 'the clock difference is logged once');
     });
 
-// The server's clock may be before the beginning of new certificates, its own and the client's, so that they are not valid by
-// that clock. The daemon must connect all the same, and report it.
-test('a server whose clock is before its certificate is read and reported; a certificate not yet valid is refused by name',
-    clocks, async () => {
-    const day = (days) => `${new Date(Date.now() + days * 86400e3).toISOString().replace(/[-:T]/g, '').slice(0, 14)}Z`;
-    for (const [name, from, to] of [['tomorrow', 1, 2], ['today', -1 / 48, 1], ['us', -1 / 48, 1]])
-        makeCertificate(server.folder, name, { dates: [day(from), day(to)] });
-    server.trust('tomorrow', 'today');
+test('a server certificate that is not yet valid is refused by name', clocks, async () => {
+    for (const [name, from, to] of [['tomorrow', 1, 2], ['us', -1 / 48, 1]])
+        makeCertificate(server.folder, name, { dates: [inDays(from), inDays(to)] });
+    server.trust('tomorrow');
     // the server's clock is 25 hours ahead: its certificate is valid for itself, but not yet for the daemon
     await server.restart({ ahead_s: 90000, certificate: 'tomorrow' });
     await plant.start(server.security('', 'us'), ROWS);
     await plant.said(/BadCertificateTimeInvalid: the server's certificate: certificate is not yet valid/);
     assert.equal((await server.tell({})).sessions, 0);
-    await plant.daemon.stop();
-    // the server's clock is an hour behind: its certificate, valid for half an hour by the daemon's clock, is not valid yet by
-    // its own
-    await server.restart({ ahead_s: -3600, certificate: 'today' });
-    await plant.run(server.security('', 'us'), ROWS);
-    await server.set('TI-1', 35);
-    const { age_ms } = await plant.until('TI-1', { ...good, value: 35 });
-    assert.ok(age_ms >= 3600e3 && age_ms < 3609e3, `the reading is ${age_ms} ms old`);
-    await plant.said(/source plc: the server's timestamps are 3[56]\d\d\.\d s behind this machine's clock/);
 });
