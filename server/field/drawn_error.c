@@ -383,7 +383,7 @@ static void amplify_some(void *arg, size_t begin, size_t end)
 /* Returns the largest length of a piece, relative to its distance to the nearest sensor. */
 static float step_of(const struct drawn_error_job *job)
 {
-    return job->near ? STEP : STEP * fminf(1, MAX_POWER / job->weights->power);
+    return job->has_values ? STEP * fminf(1, MAX_POWER / job->weights->power) : STEP;
 }
 
 struct triangle_extent {            /* size of a triangle and its distance from sensors and from the border of the reach */
@@ -455,7 +455,7 @@ static void count_samples(void *arg, size_t begin, size_t end)
    compared with their distance to the nearest sensor, or to the border of the reach. A distance alone (job->near) costs little. */
 static void choose_sampled(struct drawn_error_job *job)
 {
-    const size_t sensors = job->weights->layout->sensor_count + 2 * job->weights->member_count;
+    const size_t sensors = job->weights->layout->sensor_count + (job->has_values ? 2 * job->weights->member_count : 0);
     size_t samples = 0;
     for (job->most_pieces = job->near ? MAX_PIECES : 0; job->most_pieces < MAX_PIECES; job->most_pieces++) {
         samples += (size_t)(job->most_pieces + 1) * job->needing[job->most_pieces + 1];

@@ -14,8 +14,8 @@
    largest error of the adjacent triangles. The unit is the spread of the readings for shepard, and the largest reading for
    paper. params and usable are those of weights_create(). in_range: the readings differ by no more than preparation assumed.
    Does nothing if each pixel evaluates the field (plant/exact.h), or if preparation left no error for these parameters, all sensors
-   are used and their reach is unlimited. Prepared weights are linear within triangles by definition, so only the border of their
-   data is measured. Sets weights->errors_unknown when out of memory. */
+   are used and their reach is unlimited. Prepared weights are linear within triangles by definition, so only the border that
+   the reach and lost sensors make is measured. Sets weights->errors_unknown when out of memory. */
 void drawn_error_measure(struct weights *weights, const struct field_params *params, const uint8_t *usable, size_t vertices, bool in_range,
                          struct workers *workers);
 /* A value that depends on the distance to the nearest used sensor alone: SHOW_BLIND and SHOW_DISTANCE. */

@@ -34,6 +34,8 @@ static double error_near(const struct field_state *state, const struct field_pla
     double most = weights && weights->errors_unknown ? 1 : 0;
     if (errors && weights->interpolation_errors)
         errors = weights->interpolation_errors;
+    if (errors && weights->prepared)
+        errors = weights->prepared_errors;
     for (int k = 0; k < 3 && errors; k++)
         most = fmax(most, fmin((double)errors[place->corners[k]], 1));
     most = most * state->error_scale + of_distances;

@@ -178,7 +178,8 @@ static bool take_prepared(struct weights *weights, const struct influence_entry 
         weights->ones[i] = 1;
     if (weights->fill)
         influence_fill_values(weights->fill, weights->ones);
-    if (entry->errors && !take_errors(weights, influence_array(influence, entry->errors)))
+    weights->prepared_errors = entry->errors ? influence_array(influence, entry->errors) : NULL;
+    if (weights->prepared_errors && !take_errors(weights, weights->prepared_errors))
         return false;
     return weights->beyond_m || weights->interpolation == INTERPOLATION_HARMONIC;
 }

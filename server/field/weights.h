@@ -89,6 +89,9 @@ struct weights {
     /* [vertex]: largest error of linear interpolation within the adjacent triangles, or WEIGHTS_SHOWS_NO_DATA; unit and method in
        drawn_error.h; NULL: not measured */
     float *errors;
+    /* [vertex], for prepared interpolations: the errors that plantcast-prep stored, without the marks of the border that drawn_error_measure()
+       adds to `errors`; NULL: none, or the interpolation is not prepared */
+    const float *prepared_errors;
     float *interpolation_errors; /* `errors` without the part due to errors of distances; NULL: `errors` has no such part */
     /* [vertex]: 1: a triangle at the vertex shows SHOW_BLIND with a larger error than drawn_error_mark() accepts; NULL: not measured */
     uint8_t *blind_marks;
@@ -129,8 +132,9 @@ bool weights_key_equal(const struct weights_key *a, const struct weights_key *b)
    The caller destroys the weights. */
 struct weights *weights_create(const struct field_layout *layout, const struct field_params *params, float radius_m, const uint8_t *usable,
                                struct weights_key *key);
-/* Creates weights that only tell where there is data, at the points of a layout, even if the interpolation is prepared: weights_prepare()
-   fills near_m, place and lost. Returns NULL when out of memory. The caller destroys the weights. */
+/* Creates weights that only tell which points of a layout the sensors reach, even if the interpolation is prepared: weights_prepare() fills
+   near_m, place and lost from the reach and the lost sensors. The other border of fin and gp (beyond_m) is known at vertices only.
+   Returns NULL when out of memory. The caller destroys the weights. */
 struct weights *weights_create_border(const struct field_layout *layout, const struct field_params *params, const uint8_t *usable);
 /* Copies from other weights those computed arrays that are the same for both sets of parameters. While a user drags one
    parameter, these are most of the arrays. */
