@@ -89,8 +89,8 @@ struct weights {
     /* [vertex]: largest error of linear interpolation within the adjacent triangles, or WEIGHTS_SHOWS_NO_DATA; unit and method in
        drawn_error.h; NULL: not measured */
     float *errors;
-    /* [vertex], for prepared interpolations: the errors that plantcast-prep stored, without the marks of the border that drawn_error_measure()
-       adds to `errors`; NULL: none, or the interpolation is not prepared */
+    /* [vertex], for prepared interpolations: the errors that plantcast-prep stored, without the marks of the border that
+       drawn_error_measure() adds to `errors`; NULL: none, or the interpolation is not prepared */
     const float *prepared_errors;
     float *interpolation_errors; /* `errors` without the part due to errors of distances; NULL: `errors` has no such part */
     /* [vertex]: 1: a triangle at the vertex shows SHOW_BLIND with a larger error than drawn_error_mark() accepts; NULL: not measured */
