@@ -8,7 +8,7 @@ import { Place } from '../../clients/web/app/cards/place.js';
 import { Commands } from '../../clients/web/app/input/commands.js';
 import { Remote } from '../../clients/web/app/views/remote.js';
 import { projector } from '../../clients/web/core/camera.js';
-import { Repeater } from '../../clients/web/core/requests.js';
+import { askPick, Repeater } from '../../clients/web/core/requests.js';
 import { randomNumbers } from './random.mjs';
 
 const random = randomNumbers();
@@ -139,6 +139,20 @@ test('the card of a point waits for slow answers, and asks for the clicked point
         }
     } finally {
         calls.restore();
+    }
+});
+
+test('the card of a point does not replace an unanswered measuring or placing click, and asks for its value afterwards', () => {
+    for (const purpose of ['measure', 'placing']) {
+        const { place, sent, answer } = placeAt({ ...LENS, eye: [0, 0, 0], target: [0, 9, 0] }), { session } = place;
+        askPick(session, [5, 5], purpose);
+        place.ask();
+        assert.equal(sent.length, 1, purpose);
+        session.pickPurpose = null; // answered
+        answer(1, { purpose });
+        assert.deepEqual(sent.map(({ x }) => x), [5, 400], purpose);
+        answer(2);
+        assert.deepEqual([place.picked.value, sent.length], [2, 2], purpose);
     }
 });
 

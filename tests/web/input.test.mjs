@@ -3,6 +3,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { listenToInput } from '../../clients/web/app/input/input.js';
+import { Measure } from '../../clients/web/app/measure/measure.js';
 import { Gestures, wheelZoom } from '../../clients/web/core/gestures.js';
 import { HeldKeys, HOLD_S, keyMeaning, TAP_S } from '../../clients/web/core/keys.js';
 import { askAnchor, askPick } from '../../clients/web/core/requests.js';
@@ -165,4 +166,32 @@ test('a wheel turn does not replace the unanswered request of a measuring click'
     askAnchor(session, [1, 2], session.pickedAt + 4000);
     answer();
     assert.equal(heard[2], 'anchor', 'a lost answer delays the anchor for 3 s only');
+});
+
+test('a second measuring click waits for the answer to the first, and keeps its pixel and camera', () => {
+    const { connection, session, sockets } = makeSession();
+    connection.start();
+    sockets[0].accept();
+    sockets[0].say(vector('server/welcome.json'));
+    session.picture = { camera: session.camera };
+    const tool = Object.assign(Object.create(Measure.prototype), { session, on: true, places: [], next: null, show() {},
+        viewport: { width: 640, pixelOf: (x, y) => [x, y] } });
+    session.on('picked', (picked) => tool.hear(picked));
+    const asked = () => sockets[0].sent.filter(({ type }) => type === 'pick').map(({ x, camera }) => [x, camera.eye]);
+    const answer = (x) => sockets[0].say({ type: 'picked', seq: session.pickSeq, asset: 'E-101', position: [x, 0, 0] });
+    const { eye } = session.camera, moved = [1, 2, 3];
+    tool.click(1, 1);
+    tool.click(2, 1);
+    session.picture = { camera: { ...session.camera, eye: moved } };
+    assert.deepEqual(asked(), [[1, eye]]);
+    answer(10);
+    assert.deepEqual(asked(), [[1, eye], [2, eye]]);
+    answer(20);
+    assert.deepEqual(tool.places, [[10, 0, 0], [20, 0, 0]]);
+    for (const x of [3, 4])
+        tool.click(x, 1);
+    answer(30);
+    answer(40);
+    assert.deepEqual([tool.places, tool.next], [[[30, 0, 0], [40, 0, 0]], null]);
+    assert.deepEqual(asked().slice(2), [[3, moved], [4, moved]]);
 });

@@ -6,7 +6,10 @@ import { asAsked } from './session.js';
 import { halves } from './split_view.js';
 import { add, along, dot, subtract } from './vector.js';
 
+// Time in milliseconds after which an unanswered pick request counts as lost.
 const REPEAT_MS = 3000;
+// purposes of pick requests for clicks that no module repeats
+const CLICKS = ['measure', 'placing'];
 
 // Decides when a module repeats an unanswered pick request. Each repetition waits twice as long as the previous one, because a repetition
 // makes the session ignore the answers to earlier requests.
@@ -54,10 +57,16 @@ export function askPick(session, [x, y], purpose, camera = null) {
     session.connection.send({ type: 'pick', seq: ++session.pickSeq, x, y, camera: cameraMessage(from) });
 }
 
-// Asks the server what is at a pixel, the centre of the user's next camera moves. Asks nothing while the answer to a click that no module
-// repeats is due, because the session would ignore that answer.
+// Returns true while the answer to a measuring or placing click is due. Another pick request would replace the click, because the session
+// takes only the answer to its newest request.
+export function isClickDue(session, now = performance.now()) {
+    return CLICKS.includes(session.pickPurpose) && now - session.pickedAt < REPEAT_MS;
+}
+
+// Asks the server for the surface point at a pixel, which becomes the centre of the next orbit or zoom. Sends nothing while the answer to
+// a measuring or placing click is due.
 export function askAnchor(session, pixel, now = performance.now()) {
-    if (!['measure', 'placing'].includes(session.pickPurpose) || now - session.pickedAt >= REPEAT_MS)
+    if (!isClickDue(session, now))
         askPick(session, pixel, 'anchor');
 }
 

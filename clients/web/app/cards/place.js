@@ -2,7 +2,7 @@
 // The card of a point on the plant's surface: its equipment, the value at the point (interpolated between sensors), the sensors
 // that contribute to the value, and the uncertainty.
 import { numberText, unitText, valueText } from '../../core/format.js';
-import { askPick, askPoint, Repeater } from '../../core/requests.js';
+import { askPick, askPoint, isClickDue, Repeater } from '../../core/requests.js';
 import { asAsked } from '../../core/session.js';
 import { halves } from '../../core/split_view.js';
 import { say } from '../../core/words.js';
@@ -26,7 +26,9 @@ export class Place {
         // kind of the unanswered pick request. 'new': for the clicked point; 'again': for the card's point; null: none
         this.asked = null;
         this.repeater = new Repeater();
-        this.isLate = false; // true: readings or parameters changed after the unanswered request was sent
+        // true: readings or parameters have changed, but the value was not requested again, because a request of this card or a click is
+        // unanswered
+        this.isLate = false;
         session.on('picked', (picked) => this.hear(picked));
         session.on('tags', () => this.ask());
         session.on('params', () => this.ask());
@@ -66,10 +68,10 @@ export class Place {
     }
 
     // Requests the value again if readings or parameters have changed, even if the point is outside the picture. Repeats an unanswered
-    // request.
+    // request. Waits for the answer to a measuring or placing click.
     ask() {
         const { asked } = this;
-        this.isLate = this.repeater.waits(performance.now());
+        this.isLate = this.repeater.waits(performance.now()) || isClickDue(this.session);
         if (this.isLate || !this.session.picture)
             return;
         if (asked !== null)
@@ -79,8 +81,11 @@ export class Place {
     }
 
     hear(picked) {
-        if (this.asked === null)
-            return; // the card was closed meanwhile
+        if (this.asked === null) { // the answer belongs to another module, or the card was closed meanwhile
+            if (this.isLate)
+                this.ask();
+            return;
+        }
         const { asked } = this, again = asked === 'again';
         this.end();
         // The server answers only the newest pick request of the session. Another module's answer means that this card's request was

@@ -3,7 +3,8 @@
 import { projector } from '../../core/camera.js';
 import { halves } from '../../core/split_view.js';
 import { measure, metresText } from '../../core/measure.js';
-import { askPick } from '../../core/requests.js';
+import { askPick, isClickDue } from '../../core/requests.js';
+import { asAsked } from '../../core/session.js';
 import { say } from '../../core/words.js';
 import { byId, make, makeSvg, setText } from '../common/dom.js';
 
@@ -27,6 +28,7 @@ export class Measure {
     setOn(on) {
         this.on = on;
         this.places = [];
+        this.next = null; // click that waits for the answer to the previous click
         this.note.hidden = !on;
         byId('measure').setAttribute('aria-pressed', on);
         this.viewport.element.classList.toggle('pointing-out', on);
@@ -35,10 +37,22 @@ export class Measure {
 
     // Takes a clicked point at x, y in CSS pixels of the viewport. A third click starts another measurement.
     click(x, y) {
+        const { session, viewport } = this;
+        if (!session.picture)
+            return;
+        const half = session.shown.split && x >= viewport.width / 2 ? 1 : 0;
+        const click = { half, pixel: viewport.pixelOf(x, y), camera: asAsked(session.picture.camera) };
+        if (isClickDue(session))
+            this.next = click;
+        else
+            this.send(click);
+    }
+
+    send({ half, pixel, camera }) {
         if (this.places.length === 2)
             this.places = [];
-        this.half = this.session.shown.split && x >= this.viewport.width / 2 ? 1 : 0;
-        askPick(this.session, this.viewport.pixelOf(x, y), 'measure');
+        Object.assign(this, { half, next: null });
+        askPick(this.session, pixel, 'measure', camera);
     }
 
     hear({ position }) {
@@ -46,6 +60,8 @@ export class Measure {
             this.places.push(position);
         this.missed = !position;
         this.show();
+        if (this.next)
+            this.send(this.next);
     }
 
     get words() {
