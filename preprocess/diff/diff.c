@@ -251,7 +251,7 @@ static int by_old_asset(const void *a, const void *b)
 }
 
 /* Compares the sensors of an asset. Sensors that come from other assets are sorted by these assets, so that this call opens each
- * old asset only once. The call for another asset opens the old assets again. */
+ * old asset only once. A call for another asset opens the old assets again, except the one that was opened last. */
 static void compare_sensors(struct diff *diff, struct asset_pair *pair)
 {
     struct placed_tag *placed = mem_array(diff->new_side.tag_count, sizeof(*placed));

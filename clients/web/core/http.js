@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sends GET requests to the server.
+// Sends GET requests to the server, and repeats requests that fail.
 import { answerText } from './refusals.js';
 import { say } from './words.js';
 
