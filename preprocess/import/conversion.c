@@ -456,7 +456,7 @@ static bool read_model(const struct import_format *format, const char *path, con
     child_paths_add(&paths, own, CONFINE_WRITE);
     if (good && format->beside) {
         child_paths_add_beside(&paths, input, format->beside);
-        if (format->linked)
+        if (format->linked || inner)
             child_paths_link_beside(beside, input, format->beside); /* after unpacking, which would write through a link of the same name */
     }
     if (good)

@@ -16,7 +16,9 @@ struct import_format {
     const char *runtime; /* interpreter that runs the reader, such as "node"; NULL: the reader is an executable */
     const char *missing; /* advice printed if the reader program is not installed */
     const char *beside;  /* lower-case extensions of files that a model may refer to, such as ".mtl"; NULL: none */
-    bool linked;         /* true: the reader finds these files by links in its folder, because it may ignore case in their names */
+    /* true: the reader always finds these files by links in its folder, because it may ignore case in their names. false: it finds them
+     * next to the model, and by links only if the model was compressed */
+    bool linked;
     bool unitless;       /* true: files of this format do not state a length unit, so --units applies */
     bool upless;         /* true: files of this format do not state the up axis, so --up applies */
 };

@@ -7,6 +7,7 @@ import { once } from 'node:events';
 import { existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
+import { gzipSync } from 'node:zlib';
 import { importBroken } from './support/broken_files.mjs';
 import { inFolder } from './support/folders.mjs';
 import { volumeOf } from './support/glb_volume.mjs';
@@ -346,11 +347,14 @@ test('a signal ends the import, and no file is left behind', { skip }, () => wit
     assert.deepEqual(readdirSync(folder).sort(), ['a.ply', 'wedge.mtl']);
 }));
 
-test('OBJ: a material\'s colour is imported', { skip }, () => withMaterials((folder) => {
-    writeFileSync(join(folder, 'a.obj'), obj());
-    assert.equal(plantcast('import', join(folder, 'a.obj'), '-o', join(folder, 'plant')).status, 0);
-    const bytes = readFileSync(join(folder, 'plant/a.glb')), { materials } = JSON.parse(bytes.subarray(20, 20 + bytes.readUInt32LE(12)));
-    assert.deepEqual(materials[0].pbrMetallicRoughness.baseColorFactor, [1, 0, 0, 1]);
+test('OBJ: a material\'s colour is imported, also if the model is compressed', { skip }, () => withMaterials((folder) => {
+    for (const [name, text] of [['a.obj', obj()], ['packed.obj.gz', gzipSync(obj())]]) {
+        writeFileSync(join(folder, name), text);
+        assert.equal(plantcast('import', join(folder, name), '-o', join(folder, `plant of ${name}`)).status, 0);
+        const bytes = readFileSync(join(folder, `plant of ${name}`, name.replace(/\.obj.*/, '.glb')));
+        const { materials } = JSON.parse(bytes.subarray(20, 20 + bytes.readUInt32LE(12)));
+        assert.deepEqual(materials[0].pbrMetallicRoughness.baseColorFactor, [1, 0, 0, 1], name);
+    }
 }));
 
 test('textures are left out, and the report says so', { skip }, () => withMaterials((folder) => {
