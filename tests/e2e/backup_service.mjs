@@ -212,6 +212,15 @@ test('models outside of the plant\'s folder are in a backup without secrets; oth
           model: /srv/cad/Halle süd/b.gltf  # comment
           from: /srv/step/LINE.STP
           from: /srv/packed/line.stp.gz" >>${ETC}/options
+        mkdir -p '/srv/sub/a b/deep' /srv/plain /srv/flow && cd /srv && touch 'sub/a b/x.bin' 'sub/a b/deep/y.mtl' plain/p.bin flow/f.bin
+        touch 'sub/a b/x.png'
+        sed -i '/^assets:/i convert:\\
+          - { model: a.glb, from: a.asm, also: "../../../srv/sub/a b/{*.bin,*/*.mtl}", command: "true" }\\
+          - { model: b.glb, from: a.asm, also: /srv/flow/f.*, command: "true" } # comment\\
+          - model: c.glb\\
+            from: a.asm\\
+            also: /srv/plain/{p,q}.bin # comment\\
+            command: "true"' ${ETC}/plant.yaml
         mkdir /srv/step /srv/packed && cd /srv/step && echo step >LINE.STP && echo step >'Bolt 1.Step' && echo key >line.key
         cd /srv/packed && echo packed >line.stp.gz && echo step >nut.stp
         mkdir /srv/lib /srv/shared && echo step >/srv/lib/pin.stp && ln -s /srv/lib/pin.stp /srv/step/pin.stp
@@ -222,9 +231,9 @@ test('models outside of the plant\'s folder are in a backup without secrets; oth
     for (const name of ['Halle süd/Kessel 1.glb', 'Halle süd/b.gltf', 'Halle süd/teil 2.bin', 'tile.png', 'newest.glb', 'v2.glb'])
         assert.ok(names.includes(`srv/cad/${name}`), `${name} is not in ${names.join(', ')}`);
     for (const name of ['step/LINE.STP', 'step/Bolt 1.Step', 'packed/line.stp.gz', 'packed/nut.stp', 'step/pin.stp', 'lib/pin.stp',
-        'shared/tank.bin'])
+        'shared/tank.bin', 'sub/a b/x.bin', 'sub/a b/deep/y.mtl', 'flow/f.bin', 'plain/p.bin'])
         assert.ok(names.includes(`srv/${name}`), `${name} is not in ${names.join(', ')}`);
-    assert.ok(!names.includes('srv/step/line.key'));
+    assert.ok(!names.includes('srv/step/line.key') && !names.includes('srv/sub/a b/x.png'));
     assert.ok(names.includes('srv/linked/c.glb') && !names.some((name) => /password|tokens|\.pem/.test(name)), names.join(', '));
     ok(host.run(`plantcast backup p1 --recipient ${recipient} -o /root/c; rm -r /etc/plantcast /var/lib/plantcast /srv/*`));
     const out = ok(host.run('plantcast restore /root/b'));
