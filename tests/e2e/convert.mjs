@@ -26,7 +26,8 @@ groups:
   - { id: t, unit: °C, min: 0, max: 100 }
 tags: tags.csv
 `);
-    const prep = () => spawnSync(join(BIN, 'plantcast-prep'), [join(folder, 'plant.yaml')], { encoding: 'utf8', timeout: 60000 });
+    const prep = (where = folder) =>
+        spawnSync(join(BIN, 'plantcast-prep'), [join(where, 'plant.yaml')], { encoding: 'utf8', timeout: 60000 });
     try {
         writeFileSync(join(folder, 'tags.csv'), 'Tag Name,Address,Data Type,Eng Units,Description,Source,Group,Asset,Node,X,Y,Z\n');
         writeFileSync(join(folder, 'plate.cad'), square(1));
@@ -82,6 +83,17 @@ test('a model is converted again when a file that `also` lists is added, changed
         runs(true);
         runs(false);
     }
+}));
+
+test('the folder of the plant may have characters that are special in patterns', { skip }, () => withPlant(({ folder, write, prep }) => {
+    const inner = join(folder, '[a]{b,c}*?\\d');
+    write(COPY, ', also: "parts/*.bin"');
+    mkdirSync(join(inner, 'parts'), { recursive: true });
+    writeFileSync(join(inner, 'parts/a.bin'), '');
+    for (const name of ['plant.yaml', 'tags.csv', 'plate.cad'])
+        renameSync(join(folder, name), join(inner, name));
+    const { status, stderr } = prep(inner);
+    assert.equal(status, 0, stderr);
 }));
 
 test('a failed conversion prints one line and leaves the old model unchanged', { skip }, () => withPlant(({ folder, write, prep }) => {

@@ -3,6 +3,8 @@
 #include <limits.h>
 #include <string.h>
 
+#include "base/mem.h"
+#include "base/text/text.h"
 #include "plant/plant_impl.h"
 
 enum { DEFAULT_TIMEOUT_S = 900 };
@@ -15,6 +17,20 @@ static void check(struct yaml_reader *reader, const struct yaml_map *map, const 
         if (other->model && !strcmp(other->model, made->model))
             yaml_error(reader, yaml_map_place(map, "model"), "model: another conversion already creates '%s' (line %d)", made->model,
                        other->line);
+}
+
+/* Puts the plant's folder in front of a relative glob(3) pattern, with a backslash before each character of the folder that would be
+ * special in a pattern. */
+static void resolve_pattern(const struct plant *plant, char **pattern)
+{
+    if (!*pattern || **pattern == '/')
+        return;
+    struct text whole = { 0 };
+    for (const char *c = plant->files.folder; *c; c++)
+        text_add(&whole, strchr("*?[{\\", *c) ? "\\%c" : "%c", *c);
+    text_add(&whole, "/%s", *pattern);
+    mem_free(*pattern);
+    *pattern = whole.at;
 }
 
 void plant_conversions_read(struct yaml_reader *reader, yaml_node_t *node, struct plant *plant)
@@ -36,7 +52,7 @@ void plant_conversions_read(struct yaml_reader *reader, yaml_node_t *node, struc
         yaml_map_read(reader, item, "a conversion", keys, made, &map);
         plant_resolve_path(plant, &made->model);
         plant_resolve_path(plant, &made->from);
-        plant_resolve_path(plant, &made->also);
+        resolve_pattern(plant, &made->also);
         check(reader, &map, plant, made);
     }
 }
