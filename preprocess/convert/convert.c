@@ -35,25 +35,38 @@ static bool add_hash(const char *path, const char *also, struct text *out)
     return true;
 }
 
+/* Error function of glob(3): a folder that cannot be listed is an error, unless it does not exist. */
+static int is_unreadable(const char *path, int error)
+{
+    (void)path;
+    errno = error;
+    return error != ENOENT;
+}
+
 /* Appends to `out` one hash of the names and contents of all files that match the glob(3) pattern `also`. Returns false with errno set
- * if no file matches, or a file cannot be read. */
+ * if no file matches, or a file or folder cannot be read. */
 static bool add_matching(const char *also, struct text *out)
 {
     glob_t found = { 0 };
     struct text all = { 0 };
-    bool good = glob(also, GLOB_MARK | GLOB_BRACE, NULL, &found) == 0;
+    int status = glob(also, GLOB_MARK | GLOB_BRACE, is_unreadable, &found), error = status == GLOB_NOMATCH ? ENOENT : errno;
+    bool good = status == 0, has_folder = false;
     for (size_t i = 0; good && i < found.gl_pathc; i++) {
         const char *path = found.gl_pathv[i];
         bool is_folder = path[strlen(path) - 1] == '/';
+        has_folder = has_folder || is_folder;
         good = is_folder || add_hash(path, path, &all);
+        error = errno;
     }
-    if (found.gl_pathc == 0 || (good && !all.at))
-        errno = ENOENT;
-    good = good && all.at;
+    if (good && !all.at) {
+        good = false;
+        error = has_folder ? EISDIR : ENOENT;
+    }
     if (good)
         text_add(out, "%016" PRIx64, XXH3_64bits(all.at, strlen(all.at)));
     text_finish(&all);
     globfree(&found);
+    errno = error;
     return good;
 }
 

@@ -2,7 +2,7 @@
 // The plant file's key `convert`: plantcast-prep has another program make the models.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { mkdirSync, mkdtempSync, readdirSync, readFileSync, renameSync, rmSync, writeFileSync } from 'node:fs';
+import { mkdirSync, mkdtempSync, readdirSync, readFileSync, renameSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
@@ -83,6 +83,22 @@ test('a model is converted again when a file that `also` lists is added, changed
         runs(true);
         runs(false);
     }
+    const refused = (pattern, why) => {
+        write(COPY, `, also: ${JSON.stringify(pattern)}`);
+        assert.match(prep().stderr, why);
+    };
+    refused('parts', /'.*parts' cannot be read: Is a directory/);
+    symlinkSync('loop', join(folder, 'loop'));
+    refused('{parts,loop}/*', /'.*loop\}\/\*' cannot be read: Too many levels of symbolic links/);
+    write(COPY, ', also: "{parts,absent}/*"');
+    runs(true);
+    mkdirSync(part('deep'));
+    writeFileSync(part('deep/c.bin'), 'c');
+    runs(false);
+    write(COPY, ', also: "parts/{*,*/*}"');
+    runs(true);
+    writeFileSync(part('deep/c.bin'), 'd');
+    runs(true);
 }));
 
 test('the folder of the plant may have characters that are special in patterns', { skip }, () => withPlant(({ folder, write, prep }) => {
