@@ -43,9 +43,22 @@ static int is_unreadable(const char *path, int error)
     return error != ENOENT;
 }
 
-/* Appends to `out` one hash of the names and contents of all files that match the glob(3) pattern `also`. Returns false with errno set
- * if no file matches, or a file or folder cannot be read. */
-static bool add_matching(const char *also, struct text *out)
+/* Returns true if a file is the model of one of the plant's conversions. */
+static bool is_model(const struct plant *plant, const char *path)
+{
+    struct stat file, model;
+    if (stat(path, &file) != 0)
+        return false;
+    for (size_t i = 0; i < plant->conversion_count; i++)
+        if (stat(plant->conversions[i].model, &model) == 0 && file.st_dev == model.st_dev && file.st_ino == model.st_ino)
+            return true;
+    return false;
+}
+
+/* Appends to `out` one hash of the names and contents of all files that match the glob(3) pattern `also`. Leaves out the models of
+ * conversions: the hash must not depend on what the command writes. Returns false with errno set if no file matches, or a file or folder
+ * cannot be read. */
+static bool add_matching(const struct plant *plant, const char *also, struct text *out)
 {
     glob_t found = { 0 };
     struct text all = { 0 };
@@ -55,7 +68,7 @@ static bool add_matching(const char *also, struct text *out)
         const char *path = found.gl_pathv[i];
         bool is_folder = path[strlen(path) - 1] == '/';
         has_folder = has_folder || is_folder;
-        good = is_folder || add_hash(path, path, &all);
+        good = is_folder || is_model(plant, path) || add_hash(path, path, &all);
         error = errno;
     }
     if (good && !all.at) {
@@ -135,9 +148,9 @@ static bool convert_one(const struct plant *plant, const struct plant_conversion
 {
     char why[CHILD_WHY_BYTES];
     struct text from = { 0 }, to = { 0 };
-    const char *unread = !add_hash(how->from, how->command, &from)      ? how->from
-                         : how->also && !add_matching(how->also, &from) ? how->also
-                                                                        : NULL;
+    const char *unread = !add_hash(how->from, how->command, &from)             ? how->from
+                         : how->also && !add_matching(plant, how->also, &from) ? how->also
+                                                                               : NULL;
     bool good = !unread;
     if (unread) {
         diag_error(diag, plant->files.path, how->line, 0, "convert: '%s' cannot be read: %s", unread, strerror(errno));

@@ -101,6 +101,20 @@ test('a model is converted again when a file that `also` lists is added, changed
     runs(true);
 }));
 
+test('a conversion does not depend on the models that `convert` lists', { skip }, () => withPlant(({ folder, write, prep }) => {
+    mkdirSync(join(folder, 'models'));
+    writeFileSync(join(folder, 'models/part.bin'), '');
+    write('sed "s/{/{\\"extras\\":$(date +%s%N),/" "$1" >"$2"', ', also: "./models/*" }\n  - { model: models/b.glb, from: plate.cad, ' +
+        `command: '${COPY}', also: "*"`);
+    const yaml = join(folder, 'plant.yaml');
+    writeFileSync(yaml, readFileSync(yaml, 'utf8').replaceAll(' plate.glb', ' models/plate.glb'));
+    for (const count of [2, 0]) {
+        const { status, stderr } = prep();
+        assert.equal(status, 0, stderr);
+        assert.equal(stderr.match(/creating/g)?.length ?? 0, count, stderr);
+    }
+}));
+
 test('the folder of the plant may have characters that are special in patterns', { skip }, () => withPlant(({ folder, write, prep }) => {
     const inner = join(folder, '[a]{b,c}*?\\d');
     write(COPY, ', also: "parts/*.bin"');
