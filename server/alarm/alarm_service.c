@@ -3,7 +3,6 @@
 #include "alarm/alarm_service.h"
 
 #include <errno.h>
-#include <math.h>
 #include <stdatomic.h>
 #include <string.h>
 #include <time.h>
@@ -68,19 +67,20 @@ static void on_sample(void *arg, const struct sample_event *event)
     pthread_mutex_unlock(&service->queue_lock);
 }
 
-static void add_row(struct alarm_service *service, const struct alarm_change *change, const char *unit)
+static void add_row(struct alarm_service *service, const struct journal_entry *row)
 {
     if (service->journal)
-        journal_add(service->journal, change, change->alarm->name, unit);
+        journal_add_entry(service->journal, row);
     if (service->rows)
-        service->rows[++service->row_count % MAX_ROWS] = journal_entry_of(change, change->alarm->name, unit);
+        service->rows[++service->row_count % MAX_ROWS] = *row;
 }
 
 static void on_change(void *arg, const struct alarm_change *change)
 {
     struct alarm_service *service = arg;
     service->raised_now += change->event == ALARM_RAISE && alarm_status_is_annunciated(change->after);
-    add_row(service, change, alarm_unit(service->alarms, change->alarm));
+    const struct journal_entry row = journal_entry_of(change, change->alarm->name, alarm_unit(service->alarms, change->alarm));
+    add_row(service, &row);
 }
 
 static void on_tag(void *arg, int tag, enum alarm_kind kind, enum alarm_status status)
@@ -245,6 +245,7 @@ static bool start_journal(struct alarm_service *service)
         .folder = params->folder,
         .keep_days = params->keep_days,
         .reloads = params->before != NULL,
+        .adds_ended = !params->before && !params->mirrors,
         .error_before = params->before ? alarm_service_journal_error(params->before) : 0,
     };
     const struct instant now = { clock_mono_ns(), clock_utc_ns() };
@@ -254,23 +255,17 @@ static bool start_journal(struct alarm_service *service)
     return (service->journal = journal_start(&journal, service->alarms, now));
 }
 
-/* Adds a journal row for each alarm that was not normal before a reload and that the new plant does not have. */
-static void add_removed(struct alarm_service *service, const struct alarms *before)
+/* Adds a journal row for each alarm that a reload ended: it was not normal, and the new plant does not have it, or has other
+   settings, with which it is normal. */
+static void add_ended(struct alarm_service *service, const struct alarms *before)
 {
     for (int i = alarms_newest(before); i >= 0; i = alarms_at(before, i)->older) {
-        struct alarm alarm = *alarms_at(before, i);
-        const struct alarm_change change = { .alarm = &alarm,
-                                             .event = ALARM_CLEAR,
-                                             .before = alarm_status_of(&alarm),
-                                             .after = ALARM_NORMAL,
-                                             .utc_ns = clock_utc_ns(),
-                                             .value = NAN,
-                                             .who = "",
-                                             .reason = "a reload removed this alarm" };
-        if (change.before == ALARM_NORMAL || alarms_find_named(service->alarms, alarm.name, alarm.kind) >= 0)
+        const struct alarm *alarm = alarms_at(before, i);
+        if (!alarms_is_ended(service->alarms, alarm))
             continue;
-        alarm.state = (struct alarm_state){ 0 };
-        add_row(service, &change, alarm_unit(before, &alarm));
+        const struct journal_entry row =
+            journal_entry_of_ended(alarm, alarm->name, alarm_unit(before, alarm), clock_utc_ns(), "a reload removed or changed this alarm");
+        add_row(service, &row);
     }
 }
 
@@ -279,7 +274,7 @@ static void adopt(struct alarm_service *service, struct alarm_service *before)
     pthread_mutex_lock(&before->thread.lock);
     alarms_adopt(service->alarms, before->alarms);
     if (!service->params.mirrors) /* the core that leads sends its rows to a core that mirrors it */
-        add_removed(service, before->alarms);
+        add_ended(service, before->alarms);
     memcpy(service->raised, before->raised, sizeof(service->raised));
     service->slot = before->slot;
     pthread_mutex_unlock(&before->thread.lock);

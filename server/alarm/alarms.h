@@ -123,6 +123,8 @@ void alarms_restore(struct alarms *alarms, int index, const struct alarm *saved,
 /* Sets alarms, found by name and kind, to the states of another daemon, in the order of `list`. whole: all alarms that are not in `list`
    become normal. Returns false if an alarm does not exist; then nothing changed. */
 bool alarms_mirror(struct alarms *alarms, const struct alarm *list, size_t count, bool whole);
+/* Returns true if `before`, an alarm of an earlier plant or run, was not normal, but is normal or missing in `alarms`. */
+bool alarms_is_ended(const struct alarms *alarms, const struct alarm *before);
 /* Ends the mirroring (copying) of another daemon's alarm states. Each alarm keeps the state copied last until its tag's next
    sample. */
 void alarms_lead(struct alarms *alarms, struct instant now);

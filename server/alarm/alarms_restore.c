@@ -117,6 +117,12 @@ void alarms_adopt(struct alarms *alarms, const struct alarms *before)
     }
 }
 
+bool alarms_is_ended(const struct alarms *alarms, const struct alarm *before)
+{
+    int index = alarms_find_named(alarms, before->name, before->kind);
+    return alarm_status_of(before) != ALARM_NORMAL && (index < 0 || alarm_status_of(alarms_at(alarms, index)) == ALARM_NORMAL);
+}
+
 static void set_as_told(struct alarms *alarms, int index, const struct alarm *told)
 {
     struct alarm *alarm = &alarms->list[index];

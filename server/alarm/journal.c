@@ -214,7 +214,7 @@ int journal_settled(struct journal *journal, const struct settling_ticket *ticke
 
 static void set_unit(struct journal_entry *entry, const char *unit)
 {
-    entry->has_unit = strlen(unit) < sizeof(entry->unit);
+    entry->has_unit = unit && strlen(unit) < sizeof(entry->unit);
     if (entry->has_unit)
         strcpy(entry->unit, unit);
 }
@@ -237,15 +237,25 @@ struct journal_entry journal_entry_of(const struct alarm_change *change, const c
     return entry;
 }
 
+struct journal_entry journal_entry_of_ended(const struct alarm *alarm, const char *tag, const char *unit, int64_t utc_ns,
+                                            const char *reason)
+{
+    struct alarm ended = *alarm;
+    const struct alarm_change change = { .alarm = &ended,
+                                         .event = ALARM_CLEAR,
+                                         .before = alarm_status_of(alarm),
+                                         .after = ALARM_NORMAL,
+                                         .utc_ns = utc_ns,
+                                         .value = NAN,
+                                         .who = "",
+                                         .reason = reason };
+    ended.state = (struct alarm_state){ 0 };
+    return journal_entry_of(&change, tag, unit);
+}
+
 void journal_add_entry(struct journal *journal, const struct journal_entry *entry)
 {
     put(journal, entry);
-}
-
-void journal_add(struct journal *journal, const struct alarm_change *change, const char *tag, const char *unit)
-{
-    const struct journal_entry entry = journal_entry_of(change, tag, unit);
-    put(journal, &entry);
 }
 
 void journal_keep(struct journal *journal, const struct alarm *alarm, const char *tag, const char *unit)
@@ -273,27 +283,36 @@ bool journal_asks(struct journal *journal)
 /* --- life cycle ------------------------------------------------------------------------------------------------------------------ */
 
 struct restoring {
+    struct journal *journal;
     struct alarms *alarms;
     struct instant now;
+    bool adds_ended;
 };
 
 static void restore(void *arg, const char *tag, const char *unit, const struct alarm *alarm)
 {
-    struct restoring *restoring = arg;
+    const struct restoring *restoring = arg;
     int index = alarms_find_named(restoring->alarms, tag, alarm->kind);
-    if (index < 0)
-        return;
     struct alarm saved = *alarm;
-    const char *is = alarm_unit(restoring->alarms, alarms_at(restoring->alarms, index));
-    saved.value = unit ? alarm_value_in_unit(alarm->value, unit, is) : NAN;
-    alarms_restore(restoring->alarms, index, &saved, restoring->now);
+    saved.name = tag;
+    saved.limit = NAN;
+    if (index >= 0) {
+        const char *is = alarm_unit(restoring->alarms, alarms_at(restoring->alarms, index));
+        saved.value = unit ? alarm_value_in_unit(alarm->value, unit, is) : NAN;
+        alarms_restore(restoring->alarms, index, &saved, restoring->now);
+    }
+    if (restoring->adds_ended && alarm->kind != ALARM_NONE && alarms_is_ended(restoring->alarms, &saved)) {
+        const struct journal_entry row =
+            journal_entry_of_ended(&saved, tag, unit, restoring->now.utc_ns, "a restart removed or changed this alarm");
+        put(restoring->journal, &row);
+    }
 }
 
 /* Restores the alarm states from the journal's file. Skips a damaged file, which the thread renames before it writes. Runs before
-   that thread starts. reloads: as in struct journal_params. */
-static void restore_all(struct journal *journal, struct alarms *alarms, struct instant now, bool reloads)
+   that thread starts. */
+static void restore_all(struct journal *journal, const struct journal_params *params, struct alarms *alarms, struct instant now)
 {
-    struct restoring restoring = { alarms, now };
+    struct restoring restoring = { journal, alarms, now, params->adds_ended };
     int error;
     struct journal_file *file = journal_file_read(journal->log, journal->folder, &error);
     if (file)
@@ -302,9 +321,10 @@ static void restore_all(struct journal *journal, struct alarms *alarms, struct i
     if (!error)
         return;
     log_err(journal->log,
-            reloads ? "alarms: the alarm journal in %s cannot be read (%s): alarms keep their states, but the states of new tags' alarms "
-                      "are not restored"
-                    : "alarms: the alarm journal in %s cannot be read (%s): acknowledged, shelved and suppressed alarms are not restored",
+            params->reloads
+                ? "alarms: the alarm journal in %s cannot be read (%s): alarms keep their states, but the states of new tags' alarms "
+                  "are not restored"
+                : "alarms: the alarm journal in %s cannot be read (%s): acknowledged, shelved and suppressed alarms are not restored",
             journal->folder, database_error_text(error));
     if (error != -EBADMSG)
         set_error(journal, error);
@@ -330,7 +350,7 @@ struct journal *journal_start(const struct journal_params *params, struct alarms
     journal->folder = mem_strdup(params->folder);
     journal->keep_days = params->keep_days;
     add_counters(journal, params->counters);
-    restore_all(journal, alarms, now, params->reloads);
+    restore_all(journal, params, alarms, now);
     if (!journal->failing && params->error_before)
         set_error(journal, params->error_before);
     if (!thread_start(&journal->thread, params->log, "alarms: journal", journal_main, journal))

@@ -15,6 +15,9 @@ struct journal_params {
     const char *folder; /* folder of the journal, created if missing */
     double keep_days;
     bool reloads; /* true: the caller copies the states of alarms that the plant had before a reload over the restored ones */
+    /* true: adds a row for each alarm in the file that was not normal, and that `alarms` does not have, or whose state its settings in
+       `alarms` do not support */
+    bool adds_ended;
     int error_before; /* last journal_error() of the journal that this one replaces; holds until the file is written. 0: none */
 };
 
@@ -23,8 +26,6 @@ struct journal_params {
 struct journal *journal_start(const struct journal_params *params, struct alarms *alarms, struct instant now);
 /* Writes pending rows and ends the thread. Accepts a pointer to NULL; sets *journal to NULL. Returns true if all rows are on disk. */
 bool journal_stop(struct journal **journal);
-/* Queues a change of an alarm to be written. unit: unit of the change's value and limit. Does not block; texts are copied. */
-void journal_add(struct journal *journal, const struct alarm_change *change, const char *tag, const char *unit);
 /* This function and the next two tell whether the journal rows queued between journal_begin() and journal_end() are on disk
    (base/files/settling.h). journal_end() makes the thread write them immediately, even after a failed attempt. None of the
    three functions waits for the disk. */
@@ -33,8 +34,11 @@ void journal_end(struct journal *journal, struct settling_ticket *ticket);
 int journal_settled(struct journal *journal, const struct settling_ticket *ticket);
 /* Returns 0 if the journal's file was usable at the last attempt to read or write it, otherwise -errno. */
 int journal_error(struct journal *journal);
-/* Returns the journal row for a change of an alarm; texts are copied. */
+/* Returns the journal row for a change of an alarm; texts are copied. unit: unit of the change's value and limit; NULL: unknown. */
 struct journal_entry journal_entry_of(const struct alarm_change *change, const char *tag, const char *unit);
+/* Returns the row of an alarm that became normal because the plant's settings changed. alarm: the alarm before this change. */
+struct journal_entry journal_entry_of_ended(const struct alarm *alarm, const char *tag, const char *unit, int64_t utc_ns,
+                                            const char *reason);
 /* queues a journal row for writing; never blocks */
 void journal_add_entry(struct journal *journal, const struct journal_entry *entry);
 /* Returns true once after a new journal file was created. The file lacks the current alarm states, so the caller must pass each

@@ -54,9 +54,11 @@ enum {
     SQL_STATES, SQL_ROWS, SQL_ROWS_OF, SQL_AT, SQL_STATES_1, SQL_ROWS_1, SQL_ROWS_OF_1, SQL_AT_1, SQL_COUNT
 };
 static const char *const sql[SQL_COUNT] = {
-    /* skips a row that the journal already has: a leader resends rows whenever a standby connects */
+    /* Skips a row that the journal already has: a leader resends rows whenever a standby connects. For priority 0, takes the priority
+       from the alarm's newest row, or the lowest one if that row has been deleted */
     [SQL_EVENT] = "INSERT INTO event(t, tag, kind, event, before, after, priority, lim, value, who, reason, unit)"
-                  " SELECT ?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12 WHERE NOT EXISTS (SELECT 1 FROM event WHERE tag = ?2"
+                  " SELECT ?1, ?2, ?3, ?4, ?5, ?6, coalesce(nullif(?7, 0), (SELECT priority FROM event WHERE tag = ?2 AND kind = ?3"
+                  " ORDER BY t DESC, id DESC LIMIT 1), 4), ?8, ?9, ?10, ?11, ?12 WHERE NOT EXISTS (SELECT 1 FROM event WHERE tag = ?2"
                   " AND kind = ?3 AND t = ?1 AND event = ?4 AND before = ?5 AND after = ?6 AND value IS ?9)",
     [SQL_STATE] = "INSERT OR REPLACE INTO state(tag, kind, active, unacknowledged, latched, aside, value, raised, changed, until, who,"
                   " reason, unit) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",

@@ -9,7 +9,7 @@
 enum { JOURNAL_VERSION = 2, JOURNAL_UNIT_BYTES = 64 };
 
 struct journal_entry {
-    struct alarm alarm; /* the alarm, with its state at utc_ns */
+    struct alarm alarm; /* the alarm, with its state at utc_ns. Priority 0: unknown; the row then gets that of the alarm's newest row */
     bool changed;       /* true: the alarm changed, so a journal row is written too; false: only the alarm's current state is written */
     enum alarm_event event;
     enum alarm_status before, after;
@@ -43,8 +43,8 @@ void journal_file_close(struct journal_file **file); /* closes the file and sets
 /* Writes all entries in one transaction, except changes already in the file. Returns -EBADMSG if the file is damaged. */
 int journal_file_write(struct journal_file *file, const struct journal_entry *entries, size_t count);
 int journal_file_forget(struct journal_file *file, int64_t before_us); /* deletes journal rows (changes of alarms) older than before_us */
-/* Calls each() for the stored state of every alarm that was not normal at the last write to the journal. unit: unit of the
-   alarm's value; NULL: unknown. */
+/* Calls each() for the stored state of every alarm that was not normal at the last write to the journal, with priority 0.
+   unit: unit of the alarm's value; NULL: unknown. */
 int journal_file_states(struct journal_file *file,
                         void (*each)(void *arg, const char *tag, const char *unit, const struct alarm *alarm), void *arg);
 int journal_file_rows(struct journal_file *file, const struct journal_query *query, void (*each)(void *arg, const struct journal_row *row),

@@ -70,7 +70,7 @@ static void give_all(struct alarm_service_setup *s, double value)
 struct alarm_rows {
     int count, unacknowledged;
     int64_t smallest_id;
-    char last[400];
+    char last[400], unit[JOURNAL_UNIT_BYTES];
 };
 
 static void count_row(void *arg, const struct journal_row *row)
@@ -81,6 +81,7 @@ static void count_row(void *arg, const struct journal_row *row)
     rows->smallest_id = row->id;
     snprintf(rows->last, sizeof(rows->last), "%s %s %s %s %d %g %s %s", row->tag, row->kind, row->event, row->after, row->priority,
              row->value, row->who, row->reason);
+    snprintf(rows->unit, sizeof(rows->unit), "%s", row->unit ? row->unit : "");
 }
 
 static struct alarm_rows read_rows(struct alarm_service_setup *s, const char *tag, int limit, int64_t before_id)
@@ -171,31 +172,90 @@ CASE(while_nothing_was_recorded_no_alarm_is_known)
     history_reader_destroy(&reader);
 }
 
-CASE(an_alarm_that_a_reload_removes_is_cleared_in_the_journal)
+/* Returns the plant after a change of its files: T-0003 has no limit, T-0005 is not latched any more, and the last tag is gone. */
+static struct plant *changed_plant(void)
 {
-    start(s);
-    give_all(s, 90);
-    assert_int_equal(wait_for(s, ALARM_UNACKNOWLEDGED, TAGS), TAGS);
-    struct alarm_service *before = s->alarm_service;
-    alarm_service_halt(before);
     struct plant *plant = plant_by_hand_create(TAGS);
     plant->alarms = ALARMS_LOCAL;
     plant_by_hand_source(plant, "plc", 502);
-    for (int i = 0; i < TAGS; i++)
+    for (int i = 0; i < TAGS - 1; i++)
         plant_by_hand_tag(plant, test_printf("T-%04d", i), TABLE_HOLDING, i, DATA_INT16)->alarms.limits[LIMIT_H] = i == 3 ? NAN : 80;
+    return plant;
+}
+
+/* Starts the service of the changed plant, and stops it and the old plant's one. */
+static void change_plant(struct alarm_service_setup *s, struct plant *plant, struct alarm_service *before, bool mirrors)
+{
     const struct alarm_service_params params = { .log = s->log,
                                                  .counters = s->counters,
                                                  .plant = plant,
                                                  .store = test_store(plant),
                                                  .folder = s->folder,
                                                  .keep_days = 400,
+                                                 .mirrors = mirrors,
                                                  .before = before };
     s->alarm_service = alarm_service_start(&params);
     assert_non_null(s->alarm_service);
     alarm_service_stop(&s->alarm_service);
     alarm_service_stop(&before);
-    assert_int_equal(read_rows(s, NULL, 100000, INT64_MAX).count, TAGS + 1);
-    assert_string_equal(read_rows(s, "T-0003", 1, INT64_MAX).last, "T-0003 H clear normal 3 nan  a reload removed this alarm");
+}
+
+/* Raises all alarms. Acknowledges the one of T-0005, whose value then returns to normal, so that only its latch keeps it. Returns the
+   number of rows. */
+static int raise_all(struct alarm_service_setup *s)
+{
+    const struct alarm_act act = { ALARM_ACKNOWLEDGE, 0, "kim", "" };
+    s->plant->tags[5].alarms.settings.latch = true;
+    mem_free(s->plant->tags[TAGS - 1].unit);
+    s->plant->tags[TAGS - 1].unit = mem_strdup("bar");
+    start(s);
+    give_all(s, 90);
+    assert_int_equal(wait_for(s, ALARM_UNACKNOWLEDGED, TAGS), TAGS);
+    assert_int_equal(alarm_service_act(s->alarm_service, "T-0005", ALARM_H, &act), REFUSAL_NONE);
+    store_write(s->store, &(struct sample){ 5, 20, QUALITY_GOOD }, 1, clock_mono_ns(), clock_utc_ns());
+    assert_int_equal(wait_for(s, ALARM_LATCHED, 1), 1);
+    return TAGS + 2;
+}
+
+static void expect_ended(struct alarm_service_setup *s, const char *reason)
+{
+    static const char *const tags[] = { "T-0003", "T-0005", "T-0999" };
+    struct alarm_rows active = { 0 };
+    for (size_t i = 0; i < 3; i++)
+        assert_string_equal(read_rows(s, tags[i], 1, INT64_MAX).last, test_printf("%s H clear normal 3 nan  %s", tags[i], reason));
+    assert_string_equal(read_rows(s, "T-0999", 1, INT64_MAX).unit, "bar");
+    assert_int_equal(journal_at(s->log, s->folder, clock_utc_ns() / 1000, count_row, &active), 0);
+    assert_int_equal(active.count, TAGS - 3);
+}
+
+CASE(an_alarm_that_a_reload_ends_is_cleared_in_the_journal)
+{
+    int rows = raise_all(s);
+    alarm_service_halt(s->alarm_service);
+    change_plant(s, changed_plant(), s->alarm_service, false);
+    assert_int_equal(read_rows(s, NULL, 100000, INT64_MAX).count, rows + 3);
+    expect_ended(s, "a reload removed or changed this alarm");
+}
+
+CASE(an_alarm_that_a_restart_ends_is_cleared_in_the_journal)
+{
+    int rows = raise_all(s);
+    alarm_service_stop(&s->alarm_service);
+    for (int i = 0; i < 2; i++) {
+        change_plant(s, changed_plant(), NULL, false);
+        assert_int_equal(read_rows(s, NULL, 100000, INT64_MAX).count, rows + 3);
+    }
+    expect_ended(s, "a restart removed or changed this alarm");
+}
+
+/* The core that leads writes these rows, and sends them. */
+CASE(a_core_that_mirrors_another_clears_no_alarm_in_the_journal)
+{
+    int rows = raise_all(s);
+    alarm_service_halt(s->alarm_service);
+    change_plant(s, changed_plant(), s->alarm_service, true);
+    change_plant(s, changed_plant(), NULL, true);
+    assert_int_equal(read_rows(s, NULL, 100000, INT64_MAX).count, rows);
 }
 
 /* An alarm journalled one second before a kill survives it, and later transitions continue from that state. */
