@@ -270,8 +270,8 @@ static void replace_later(struct outbox *outbox, int64_t *time_us, int64_t lates
     outbox->dirty = true;
 }
 
-/* Corrects times that are in the future because the wall clock was set back. The other functions can then compare times with
-   now_us without regard to such a step. */
+/* Corrects times that are in the future because the wall clock was set back, so that outbox_tick() and outbox_next() can compare
+   them with now_us. Does not correct told_us: begin() ignores a told_us in the future. */
 static void correct_future(struct outbox *outbox, int64_t now_us)
 {
     for (size_t i = 0; i < outbox->count; i++) {

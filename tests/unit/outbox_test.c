@@ -394,6 +394,17 @@ CASE(it_escalates_after_the_clock_was_set_back)
     assert_int_equal(deliver(f, BOSS, before + 10 * MIN + 3 * S), 1);
 }
 
+CASE(an_alarm_that_returns_after_the_clock_was_set_back_is_told)
+{
+    int64_t before = T0 - 24 * 60 * MIN;
+    load(f, "  - { id: all, to: ops }\n");
+    put(f, 0, DISPLAY, true, false, T0, T0);
+    assert_int_equal(deliver(f, OPS, T0 + 3 * S), 1);
+    put(f, 0, DISPLAY, false, false, T0, T0 + 10 * S);
+    put(f, 0, DISPLAY, true, false, before, before);
+    assert_int_equal(deliver(f, OPS, before + 3 * S), 1);
+}
+
 CASE(alertmanager_gets_alerts_after_the_clock_was_set_back)
 {
     struct outbox_message message;
