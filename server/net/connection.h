@@ -47,7 +47,7 @@ const char *connection_who(const struct connection *connection);
 /* Records a request of an identified user in the audit trail. result: as in struct audit_entry; why: the reason of a refusal, or NULL. */
 void connection_record(const struct server_context *server, struct lws *wsi, const char *event, const char *result, const char *path,
                        const char *why);
-/* Like connection_record(), for a request that was refused because of the user's rights. */
+/* Records a refused request, event `access`, in the audit trail. why: the reason. */
 void connection_record_refusal(const struct server_context *server, struct lws *wsi, const char *path, const char *why);
 /* Logs and counts an accepted or refused token, or a session that needed no token. way: how the client gained access (static
    text). holder: the token's owner; role ROLE_NOBODY: the token is unknown. */
