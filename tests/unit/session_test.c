@@ -989,11 +989,17 @@ CASE(a_viewer_opens_saved_views_and_keeps_no_baseline)
     expect_error(f, "bad_field");
     assert_true(f->session->view.field.power == 3);
     const double power = f->context.plant->groups[0].power;
-    say(f, "{\"type\":\"params\",\"seq\":4,\"named\":null,\"backdrop\":\"dark\",\"look\":\"flat\"}");
     const struct view *view = &f->session->view;
-    assert_true(power != 3 && view->field.power == power && view->look == LOOK_FLAT);
-    say(f, "{\"type\":\"params\",\"seq\":5,\"named\":\"own\"}");
-    assert_true(view->field.power == 3 && view->look == LOOK_DEFAULT && view->dark);
+    say(f, "{\"type\":\"camera\",\"seq\":1,\"eye\":[40,2,3],\"target\":[0,0,0]}");
+    say(f, "{\"type\":\"params\",\"seq\":4,\"backdrop\":\"dark\",\"look\":\"flat\"}");
+    const struct view before = *view;
+    assert_true(before.dark && before.look == LOOK_FLAT && before.camera.eye_m[0] == 40);
+    say(f, "{\"type\":\"params\",\"seq\":5,\"named\":null}");
+    assert_true(power != 3 && view->field.power == power && view->look == LOOK_DEFAULT && view->dark);
+    assert_memory_equal(&view->camera, &before.camera, sizeof(before.camera));
+    say(f, "{\"type\":\"params\",\"seq\":6,\"named\":\"own\",\"look\":\"flat\"}");
+    assert_true(view->field.power == 3 && view->look == LOOK_FLAT && view->dark);
+    assert_memory_equal(&view->camera, &before.camera, sizeof(before.camera));
 }
 
 CASE(what_is_shown_is_confirmed)
