@@ -137,7 +137,7 @@ static const char *why_of(const struct http_request *request, CURLcode code, lon
         return "the answer is too large";
     if (status && code == CURLE_OPERATION_TIMEDOUT)
         return "the answer is incomplete: the server has stopped sending";
-    if (status && code == CURLE_PARTIAL_FILE)
+    if (status && (code == CURLE_PARTIAL_FILE || code == CURLE_RECV_ERROR))
         return "the answer is incomplete: the connection ended too early";
     return http_request_why(request, code);
 }
@@ -158,9 +158,8 @@ static long send_request(struct http_request *request, const struct daemon_url *
     curl_easy_getinfo(handle, CURLINFO_RESPONSE_CODE, &status);
     if (code == CURLE_OK)
         return status;
-    const char *why = why_of(request, code, status);
-    fprintf(stderr, "plantcast: %s: %s%s\n", address, why,
-            strstr(why, "SSL") ? "; pass the certificate of the daemon or of its authority with --ca FILE" : "");
+    fprintf(stderr, "plantcast: %s: %s%s\n", address, why_of(request, code, status),
+            code == CURLE_PEER_FAILED_VERIFICATION ? "; pass the certificate of the daemon or of its authority with --ca FILE" : "");
     return 0;
 }
 

@@ -8,6 +8,7 @@ import { appendFileSync, copyFileSync, existsSync, mkdirSync, readFileSync, rmSy
 import { connect, createServer } from 'node:net';
 import { join } from 'node:path';
 import { after, afterEach, test } from 'node:test';
+import { createServer as createTlsServer } from 'node:tls';
 import { makeCertificate } from './support/certificate.mjs';
 import { PlainClient } from './support/plain_client.mjs';
 import { long } from './support/promise.mjs';
@@ -135,24 +136,27 @@ test('snapshot --view accepts views of the plant file and of the page, by id or 
         await refused(url, /HTTP status 401/, '--view', 'pump');
     });
 
-// Serves one answer: `head`, `first`, then 2000 bytes of a picture. Then closes the connection, unless `stalls`.
-async function serveCutOff(head, first, stalls) {
-    const server = createServer((client) => {
+// Serves one answer: `head`, `first`, then 2000 bytes of a picture. Then closes the connection, unless `stalls`. tls: serves over TLS, and
+// closes the connection without a TLS message.
+async function serveCutOff(head, first, stalls, tls) {
+    const serve = (client) => {
         client.on('error', () => {});
         client.once('data', () => {
             client.write(`HTTP/1.1 200 OK\r\nContent-Type: image/png\r\n${head}\r\n${first}`);
-            client.write(Buffer.alloc(2000, 7), () => stalls || client.end());
+            client.write(Buffer.alloc(2000, 7), () => stalls || (tls ? client.destroy() : client.end()));
         });
-    }).listen(0, '127.0.0.1');
+    };
+    const key = () => readFileSync(join(plant.folder, 'cert.key'));
+    const server = (tls ? createTlsServer({ cert: readFileSync(cert), key: key() }, serve) : createServer(serve)).listen(0, '127.0.0.1');
     await once(server, 'listening');
     return server;
 }
 
-async function saveCutOff(t, head, first = '', stalls = false) {
-    const server = await serveCutOff(head, first, stalls), png = join(plant.folder, 'cut.png');
+async function saveCutOff(t, head, first = '', { stalls = false, tls = false } = {}) {
+    const server = await serveCutOff(head, first, stalls, tls), png = join(plant.folder, 'cut.png');
     t.after(() => server.close());
     writeFileSync(png, 'the old picture');
-    const { code, err } = await run('snapshot', `http://127.0.0.1:${server.address().port}/`, '-o', png);
+    const { code, err } = await run('snapshot', `http${tls ? 's' : ''}://127.0.0.1:${server.address().port}/`, '--ca', cert, '-o', png);
     return { code, err, saved: readFileSync(png) };
 }
 
@@ -165,12 +169,22 @@ test('snapshot leaves the old file if the answer is cut off; it accepts one that
         const chunked = await saveCutOff(t, 'Transfer-Encoding: chunked\r\n', '7d0\r\n'); // the last chunk is missing
         assert.deepEqual([chunked.code, String(chunked.saved)], [1, 'the old picture']);
         assert.match(chunked.err, /the answer is incomplete/);
+        const overTls = await saveCutOff(t, 'Content-Length: 5000\r\n', '', { tls: true });
+        assert.deepEqual([overTls.code, String(overTls.saved)], [1, 'the old picture']);
+        assert.match(overTls.err, /the answer is incomplete: the connection ended too early\n$/);
         const whole = await saveCutOff(t, 'Connection: close\r\n');
         assert.deepEqual([whole.code, whole.err, whole.saved.length], [0, '', 2000]);
     });
 
+test('an error names --ca if the certificate is not trusted', { skip, timeout: 100000 }, async (t) => {
+    const server = await serveCutOff('Content-Length: 5000\r\n', '', false, true);
+    t.after(() => server.close());
+    const { err } = await run('tags', `https://127.0.0.1:${server.address().port}/`);
+    assert.match(err, /pass the certificate of the daemon or of its authority with --ca FILE\n$/);
+});
+
 test('snapshot ends if the server stops sending for a minute', { skip: skip || long, timeout: 150000 }, async (t) => {
-    const { code, err, saved } = await saveCutOff(t, 'Content-Length: 5000\r\n', '', true);
+    const { code, err, saved } = await saveCutOff(t, 'Content-Length: 5000\r\n', '', { stalls: true });
     assert.deepEqual([code, String(saved)], [1, 'the old picture']);
     assert.match(err, /the server has stopped sending/);
 });
