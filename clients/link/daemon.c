@@ -144,7 +144,8 @@ static const char *why_of(const struct http_request *request, CURLcode code, lon
 
 static long send_request(struct http_request *request, const struct daemon_url *url, const char *address)
 {
-    long status = 0;
+    long status = 0, redirects = 0;
+    char *last_url = NULL;
     CURL *handle = request->handle;
     http_request_authorize(request, "", url->access->authorization[0] ? url->access->authorization : NULL);
     curl_easy_setopt(handle, CURLOPT_URL, address);
@@ -156,6 +157,11 @@ static long send_request(struct http_request *request, const struct daemon_url *
     curl_easy_setopt(handle, CURLOPT_LOW_SPEED_TIME, (long)SILENCE_S);
     CURLcode code = curl_easy_perform(handle);
     curl_easy_getinfo(handle, CURLINFO_RESPONSE_CODE, &status);
+    curl_easy_getinfo(handle, CURLINFO_REDIRECT_COUNT, &redirects);
+    curl_easy_getinfo(handle, CURLINFO_EFFECTIVE_URL, &last_url);
+    if (code == CURLE_OK && status == 401 && redirects > 0 && url->access->authorization[0])
+        fprintf(stderr, "plantcast: %s: the server redirects to %s, and the token is not sent to another server: use that server's URL\n",
+                address, last_url);
     if (code == CURLE_OK)
         return status;
     fprintf(stderr, "plantcast: %s: %s%s\n", address, why_of(request, code, status),

@@ -5,6 +5,7 @@ import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { once } from 'node:events';
 import { appendFileSync, copyFileSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { createServer as createHttpServer } from 'node:http';
 import { connect, createServer } from 'node:net';
 import { join } from 'node:path';
 import { after, afterEach, test } from 'node:test';
@@ -181,6 +182,20 @@ test('an error names --ca if the certificate is not trusted', { skip, timeout: 1
     t.after(() => server.close());
     const { err } = await run('tags', `https://127.0.0.1:${server.address().port}/`);
     assert.match(err, /pass the certificate of the daemon or of its authority with --ca FILE\n$/);
+});
+
+test('an error names the server to which another one redirects, if it does not get the token', { skip, timeout: 100000 }, async (t) => {
+    const token = join(plant.folder, 'token'), urlOf = (server) => `http://127.0.0.1:${server.address().port}/`;
+    writeFileSync(token, 'a'.repeat(32));
+    const target = createHttpServer((request, answer) => answer.writeHead(request.headers.authorization ? 200 : 401).end('[]'));
+    const first = createHttpServer((request, answer) => answer.writeHead(302, { location: urlOf(target) }).end());
+    for (const server of [target, first]) {
+        await once(server.listen(0, '127.0.0.1'), 'listening');
+        t.after(() => server.close());
+    }
+    const { code, err } = await run('tags', urlOf(first), '--token-file', token);
+    assert.equal(code, 1);
+    assert.ok(err.includes(`the server redirects to ${urlOf(target)}, and the token is not sent to another server`), err);
 });
 
 test('snapshot ends if the server stops sending for a minute', { skip: skip || long, timeout: 150000 }, async (t) => {
