@@ -27,18 +27,21 @@ export const LIES = {
 
 const end = (listener, sockets) => new Promise((done) => { sockets.forEach((socket) => socket.destroy()); listener.close(done); });
 
-// Listens on the port, and answers the first data of each connection with the buffers `lies`. Returns { stop, seen(): number of
-// connections that sent data }.
+// Listens on the port, and answers the first data of each connection with the buffers `lies`. Returns { stop, left(): number of
+// connections that sent data and that the client has closed }.
 export async function tellLies(port, lies) {
-    let seen = 0;
+    let left = 0;
     const sockets = new Set();
     const listener = createServer((socket) => {
         sockets.add(socket);
         socket.on('error', () => {});
-        socket.once('data', () => { seen++; lies.forEach((bytes) => socket.write(bytes)); });
+        socket.once('data', () => {
+            socket.on('close', () => left++);
+            lies.forEach((bytes) => socket.write(bytes));
+        });
     });
     await new Promise((done) => listener.listen(port, '127.0.0.1', done));
-    return { seen: () => seen, stop: () => end(listener, sockets) };
+    return { left: () => left, stop: () => end(listener, sockets) };
 }
 
 // Relays connections to the server at port `to`. Passes on the server's first `spared` bytes unchanged, and then puts a far too

@@ -38,11 +38,12 @@ tags: tags.csv
         writeFileSync(join(this.folder, 'tags.csv'), `${[HEAD + more, ...rows].join('\n')}\n`);
     }
 
-    // Writes and prepares the plant and starts its daemon, without waiting for a connection to the broker or server.
-    async start(keys, rows) {
+    // Writes and prepares the plant and starts its daemon with these options, without waiting for a connection to the broker or
+    // server.
+    async start(keys, rows, ...flags) {
         this.write(keys, rows);
         this.plant.prepare();
-        await this.plant.startDaemon();
+        await this.plant.startDaemon(...flags);
     }
 
     // Waits until the daemon's log matches.
