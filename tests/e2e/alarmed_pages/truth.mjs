@@ -54,7 +54,8 @@ function letterMinutes(px, { inches, metres }, screen) {
 test(`on a wall of ${SIZE.width} pixels, all text is legible from 3 m, alarms are counted, and there are no buttons`, options, () =>
     withPicture(`${url}?wall&theme=dark`, WALL, async (page) => {
         await waitForHealth(page, 'live');
-        await page.waitForFunction(() => document.querySelector('#alarm-counts .priority'));
+        await page.locator('#alarm-strip').waitFor();
+        await page.locator('#alarm-counts .priority').first().waitFor();
         await settle(page);
         const { readWall } = await import('../../../clients/web/core/wall.js');
         const seen = await letters(page);
