@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Starts the demo plant that all tests in this folder share; each test opens its own pages. Readings change only when a test
-// sets them, so that pages do not request pictures all the time.
+// Starts the demo plant that all groups of tests in this folder share. The groups run one after another; first_light kills and
+// restarts the daemon. Readings change only when a test sets them, so that pages do not request pictures all the time.
 import { after } from 'node:test';
 import { startPlant } from '../support/plant.mjs';
 

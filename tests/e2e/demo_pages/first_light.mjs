@@ -69,6 +69,7 @@ test('a changed reading changes the picture at its sensor, and nowhere but on it
     const wanted = one.value > 100 ? 40 : 160;
     t.diagnostic(`${one.name} on ${one.asset}: ${one.value} -> ${wanted}`);
 
+    t.after(() => plant.ask(`set ${one.name} ${one.value}`));
     await plant.ask(`set ${one.name} ${wanted}`);
     await waitForChange(page, one, before, 30);
     await settle(page, QUIET_MS);
@@ -91,7 +92,6 @@ test('a changed reading changes the picture at its sensor, and nowhere but on it
     await page.locator('#card', { hasText: new RegExp(`^${one.name}`) }).waitFor();
     await page.locator('#card .value', { hasText: new RegExp(`^${wanted}\\.\\d °C$`) }).waitFor();
     await shoot(page, 'one-reading');
-    await plant.ask(`set ${one.name} ${one.value}`);
 });
 
 test('mouse, wheel and keys move the camera, and the picture follows', options, async () => {
@@ -133,14 +133,16 @@ test('the daemon dies: a message says so and the picture stays; when the daemon 
     await settle(page, QUIET_MS);
     const before = await grab(page), asked = await view(page), tags = await measured(), coded = await codec();
     await plant.stopDaemon('SIGKILL');
-    await waitForHealth(page, 'lost');
-    await page.locator('#health .words', { hasText: /^Disconnected$/ }).waitFor();
-    await page.locator('#banner', { hasText: /This picture is \d+(\.\d)? s old/ }).waitFor();
-    const frozen = difference(before, await grab(page));
-    assert.equal(countOutside(frozen, 0, {}), 0, 'the last picture stays as it was');
-    await shoot(page, 'disconnected');
-
-    await plant.startDaemon();
+    try {
+        await waitForHealth(page, 'lost');
+        await page.locator('#health .words', { hasText: /^Disconnected$/ }).waitFor();
+        await page.locator('#banner', { hasText: /This picture is \d+(\.\d)? s old/ }).waitFor();
+        const frozen = difference(before, await grab(page));
+        assert.equal(countOutside(frozen, 0, {}), 0, 'the last picture stays as it was');
+        await shoot(page, 'disconnected');
+    } finally {
+        await plant.startDaemon();
+    }
     await waitForHealth(page, 'live');
     await page.locator('#banner').waitFor({ state: 'hidden' });
     await waitForMeasured(tags);
@@ -172,13 +174,16 @@ test('the address keeps the view across a reload', options, async () => {
 
 test('a silent PLC: the page says that there are no live data, and is live again when the PLC answers', options, async () => {
     await plant.ask('pause');
-    await waitForHealth(page, 'nodata');
-    await page.locator('#banner', { hasText: /No live data/i }).waitFor();
-    await page.waitForFunction(() => globalThis.plantcast.session.picture.oldestAgeMs === null);
-    await settle(page, QUIET_MS);
-    await until('no value on the screen', async () => (await markers(page)).every((m) => m.quality === 'bad' && m.value === null));
-    await shoot(page, 'no-live-data');
-    await plant.ask('resume');
+    try {
+        await waitForHealth(page, 'nodata');
+        await page.locator('#banner', { hasText: /No live data/i }).waitFor();
+        await page.waitForFunction(() => globalThis.plantcast.session.picture.oldestAgeMs === null);
+        await settle(page, QUIET_MS);
+        await until('no value on the screen', async () => (await markers(page)).every((m) => m.quality === 'bad' && m.value === null));
+        await shoot(page, 'no-live-data');
+    } finally {
+        await plant.ask('resume');
+    }
     await waitForHealth(page, 'live');
 });
 
