@@ -22,10 +22,10 @@ test-long: test-deps
 	@PLANTCAST_FUZZ_ROUNDS=200000 $(out)/tests/unit/rvm_fuzz_test
 	@REPLAY_S=3600 $(out)/tests/unit/modbus_history_test
 	@PLANTCAST_BIN=$(bin) node --test tests/long/replay.mjs
-	@PLANTCAST_BIN=$(bin) USE_S=1800 node --test --test-name-pattern='memory' tests/e2e/list_pages/assets.mjs
-	@PLANTCAST_BIN=$(bin) USES=1440 MEMORY_MB=2048 node --test tests/e2e/memory.mjs
+	@PLANTCAST_BIN=$(bin) PLANTCAST_LONG=1 USE_S=1800 node --test --test-name-pattern='memory' tests/e2e/list_pages/assets.mjs
+	@PLANTCAST_BIN=$(bin) PLANTCAST_LONG=1 USES=1440 MEMORY_MB=2048 node --test tests/e2e/memory.mjs
 	@PLANTCAST_BIN=$(bin) PLANTCAST_OUT=$(out) LOSSES=20 node --test tests/e2e/wall_pages/losses.mjs
-	@PLANTCAST_BIN=$(bin) PLANTCAST_OUT=$(out) LOSSES=20 node --test tests/e2e/gpu.mjs
+	@PLANTCAST_BIN=$(bin) PLANTCAST_OUT=$(out) PLANTCAST_LONG=1 LOSSES=20 node --test tests/e2e/gpu.mjs
 	@PLANTCAST_BIN=$(bin) VIDEO_S=600 node --test --test-name-pattern='every second' tests/e2e/video.mjs
 	@PLANTCAST_BIN=$(bin) PLANTCAST_OUT=$(out) HELD_S=600 node --test --test-name-pattern='two, ten and all' tests/e2e/wall_pictures.mjs
 	@$(MAKE) --no-print-directory validation scale soak
