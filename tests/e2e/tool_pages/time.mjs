@@ -153,17 +153,19 @@ const leastDrawn = () => page.evaluate((stepS) => {
 
 test('a drag zooms, the wheel zooms about the pointer, dragging the axis pans, and each can be undone', options, async () => {
     await page.waitForFunction(() => globalThis.plantcast.trends.series.size === 3 && globalThis.plantcast.trends.chart);
+    // zooms out to 8 hours: the server answers with a point a minute, which are too few for the range that the drag chooses
+    await page.locator('#trend-span label', { hasText: 'Shift' }).click();
     await drawn(await rangeOf());
     await settle(page); // waits until the value axes of all three tags have their final widths, because they move the plot
     const box = await page.locator('#trend-chart .u-over').boundingBox(), y = box.y + box.height / 2;
     const [from, to] = await rangeOf(), at = (x) => from + ((to - from) * (x - box.x)) / box.width;
-    const [a, b] = [0.3, 0.7].map((part) => Math.round(box.x + part * box.width));
+    const [a, b] = [0.92, 0.965].map((part) => Math.round(box.x + part * box.width));
     await page.mouse.move(a, y);
     await page.mouse.down();
     await page.mouse.move(b, y, { steps: 4 });
     await page.mouse.up();
     const zoomed = await rangeOf();
-    assert.ok([a, b].every((x, i) => Math.abs(at(x) - zoomed[i]) < 12e6), JSON.stringify([[a, b].map(at), zoomed]));
+    assert.ok([a, b].every((x, i) => Math.abs(at(x) - zoomed[i]) < (to - from) / 300), JSON.stringify([[a, b].map(at), zoomed]));
     assert.equal((await shown()).past, false, 'a drag does not count as a click');
     await drawn(zoomed);
     assert.ok(await leastDrawn() > 0.5, 'the curves of the zoomed range lack no points');
@@ -186,9 +188,14 @@ test('a drag zooms, the wheel zooms about the pointer, dragging the axis pans, a
         'the range moves to earlier times and keeps its length');
     await drawn(moved);
     await shoot(page, 'trend-zoomed');
-    for (let i = 0; i < 4 && await page.locator('#trend-back').isEnabled(); i++)
-        await page.locator('#trend-back').click();
+    const back = page.locator('#trend-back');
+    while ((await rangeOf())[0] !== zoomed[0])
+        await back.click();
+    await drawn(zoomed);
+    assert.ok(await leastDrawn() > 0.5, 'the curves of the range to which the page returns lack no points');
+    await back.click();
     await page.waitForFunction(() => globalThis.plantcast.trends.fixed === null);
+    await page.locator('#trend-span label', { hasText: '1 h' }).click();
 });
 
 test('a typed time range is shown, with its statistics, and the crosshair is shared with the time bar', options, async () => {
