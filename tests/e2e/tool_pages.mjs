@@ -6,6 +6,9 @@ import './support/browser.mjs';
 import './tool_pages/boxes.mjs';
 
 describe('tool_pages', { concurrency: 2 }, () => {
-    for (const subject of ['tools', 'time', 'step', 'clip_gizmo'])
-        describe(subject, { concurrency: 1 }, () => import(`./tool_pages/${subject}.mjs`));
+    for (const subjects of [['tools', 'clip_gizmo'], ['time'], ['step']])
+        describe(subjects.join(), { concurrency: 1 }, () => {
+            for (const subject of subjects)
+                describe(subject, { concurrency: 1 }, () => import(`./tool_pages/${subject}.mjs`));
+        });
 });

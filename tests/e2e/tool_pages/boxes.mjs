@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Starts the plant of two boxes that the tests of tools and of sections share. Each test opens its own pages, and none changes the
-// plant, except TI-1's value.
+// Starts the plant of two boxes that the tests of tools and of sections share. These groups run one after another. The tests of
+// tools set TI-1's value, and write notes and remove them.
 import { after } from 'node:test';
 import { TinyPlant } from '../support/tiny_plant.mjs';
 

@@ -180,12 +180,17 @@ test('the saved picture equals the picture on the screen', options, async () => 
     await page.evaluate(() => globalThis.plantcast.session.setParams({ show: 'value', ghost: [] }));
 });
 
-test('a saved picture has the page\'s theme, and the active notes below', options, async () => {
+test('a saved picture has the page\'s theme, and the active notes below', options, async (t) => {
     const noteIds = () => page.evaluate(() => globalThis.plantcast.session.notes.map(({ id }) => id));
     const post = (message) => page.evaluate((one) => {
         const { session } = globalThis.plantcast;
         session.post({ seq: ++session.toldSeq, ...one });
     }, message);
+    t.after(async () => {
+        for (const id of await noteIds())
+            await post({ type: 'remove_note', id });
+        await page.waitForFunction(() => globalThis.plantcast.session.notes.length === 0);
+    });
     const save = async (name) => {
         const download = page.waitForEvent('download');
         await page.locator('#snapshot').click();
@@ -221,9 +226,6 @@ test('a saved picture has the page\'s theme, and the active notes below', option
     const long = await save('saved-notes-long');
     assert.ok(long.height > light.height + 48,
         `a word longer than a line makes the picture ${long.height} px high instead of ${light.height}`);
-    for (const id of await noteIds())
-        await post({ type: 'remove_note', id });
-    await page.waitForFunction(() => globalThis.plantcast.session.notes.length === 0);
 });
 
 test('the legend warns that values cannot be read from a glossy look', options, async () => {
