@@ -4,8 +4,10 @@
 import { describe } from 'node:test';
 // imported by this file, so that the browser is closed after the last group of tests and not after the first
 import './support/browser.mjs';
+import { isHeld } from './support/promise.mjs';
 
-describe('wall_pages', { concurrency: 2 }, () => {
+// Where the limits of promise() are enforced, no other group takes processor time.
+describe('wall_pages', { concurrency: isHeld ? 1 : 2 }, () => {
     for (const subject of ['displays', 'faults', 'seam', 'tile_marks', 'losses'])
         describe(subject, { concurrency: 1 }, () => import(`./wall_pages/${subject}.mjs`));
 });

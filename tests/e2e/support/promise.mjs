@@ -7,7 +7,8 @@ import assert from 'node:assert/strict';
 // test-long`.
 export const long = process.env.PLANTCAST_LONG === '1' ? false : 'make test-long runs it';
 
-const isHeld = process.env.PLANTCAST_TIMES === '1';
+// Whether the limits are enforced.
+export const isHeld = process.env.PLANTCAST_TIMES === '1';
 
 // Reports how long `what` took. Fails if that is mostMs or more, but only where limits are enforced.
 export function promise(t, what, ms, mostMs) {
