@@ -91,6 +91,7 @@ const wear = (theme) => page.evaluate((name) => { document.documentElement.datas
 async function lookAtEverything(theme, rules, other) {
     const seen = [];
     const look = async (name) => {
+        await becomes(() => unsaid(page), [], name);
         if (name === 'closed')
             return;
         seen.push(name);
@@ -105,10 +106,7 @@ async function lookAtEverything(theme, rules, other) {
         assert.deepEqual(await findings(page, COLOURS, part), [], `${name}, ${other}`);
         await wear(theme);
     };
-    await everyPanel(page, async (name) => {
-        await becomes(() => unsaid(page), [], name);
-        await look(name);
-    });
+    await everyPanel(page, look);
     await travel(page, await page.evaluate(() => globalThis.plantcast.session.clockUs() - 5e6));
     await page.waitForFunction(() => globalThis.plantcast.session.picture.past && document.body.classList.contains('shows-past'));
     await look('past');
