@@ -9,7 +9,7 @@ import { join } from 'node:path';
 import { test } from 'node:test';
 import { DATA, inFolder } from './support/folders.mjs';
 import { ifc } from './support/ifc_sample.mjs';
-import { takes } from './support/sweep.mjs';
+import { sweep, takes } from './support/sweep.mjs';
 import { BIN, notBuilt, TinyPlant } from './support/tiny_plant.mjs';
 
 const there = (name) => existsSync(join(BIN, name));
@@ -122,7 +122,7 @@ const FORMATS = {
 };
 
 for (const [format, { needs, ending = format, make }] of Object.entries(FORMATS))
-    test(`names in ${format} files are decoded in each encoding`,
+    test(`names in ${format} files are decoded in ${format === 'ifc' ? sweep('each encoding', 'some encodings') : 'each encoding'}`,
         { skip: skip || (needs && !there(needs) ? `not built: ${needs}` : needs?.endsWith('occt') &&
         !existsSync(SAMPLES) ? 'not built: step_samples' : false) }, (t) => inFolder((folder) => {
         let right = 0;
@@ -130,7 +130,7 @@ for (const [format, { needs, ending = format, make }] of Object.entries(FORMATS)
         // Each IFC file takes half a second of processor time. TextDecoder decodes these files, so a few encodings suffice, if it knows
         // the names of all.
         Object.keys(ENCODINGS).forEach((name) => new TextDecoder(name));
-        const tried = Object.entries(ENCODINGS).filter((_, i) => format !== 'ifc' || takes(0, i, 3));
+        const tried = Object.entries(ENCODINGS).filter((_, i) => format !== 'ifc' || takes(1, i, 3));
         for (const [name, [iconv, a, b]] of tried) {
             const file = join(folder, `m.${ending}`), plant = join(folder, name);
             writeFileSync(file, make(a, b, iconv, name));
