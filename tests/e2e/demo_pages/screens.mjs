@@ -31,7 +31,8 @@ async function openOn(screen) {
     return { ...opened, ...await view(page) };
 }
 
-// Returns a page to its first view, closes its lists, trends and time bar, and returns sheets and legends to their usual height.
+// Returns a page to its first view, closes its lists, trends and time bar, and returns sheets and legends to their usual height. Does not
+// close the panels of the toolbar, and does not undo the theme, the span of trends, measuring or notes.
 const reset = ({ page, camera, params }) => page.evaluate(([first, all]) => {
     const { selectTag, session } = globalThis.plantcast, isOpen = (id) => document.getElementById(id)?.checkVisibility();
     for (const [part, button] of [['trends', 'trend-close'], ['timeline', 'time-toggle'], ['alarms', 'alarm-strip'],
