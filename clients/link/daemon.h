@@ -9,9 +9,9 @@
 #include "base/text/text.h"
 #include "message/message.h"
 
-struct daemon_access {                        /* values of the options --token-file and --ca */
+struct daemon_access { /* values of the options --token-file and --ca */
     char authorization[TOKEN_MAX_CHARS + sizeof("Bearer ")]; /* value of the HTTP header Authorization; empty: no token */
-    const char *token_path, *ca_path;         /* token file; file of trusted certificates; NULL: not given */
+    const char *token_path, *ca_path;                        /* token file; file of trusted certificates; NULL: not given */
 };
 
 struct daemon_url {

@@ -2,30 +2,21 @@
 // A display that shows one tile of a wall and whose clock is 5 s ahead of the server's: it must show each picture at the time
 // that the server sets for all tiles.
 import assert from 'node:assert/strict';
-import { appendFileSync } from 'node:fs';
 import { test } from 'node:test';
 import { openPage } from '../support/browser.mjs';
 import { PlainClient } from '../support/plain_client.mjs';
 import { promise } from '../support/promise.mjs';
 import { setUp } from '../support/set_up.mjs';
-import { notBuilt, TinyPlant } from '../support/tiny_plant.mjs';
+import { notBuilt } from '../support/tiny_plant.mjs';
+import { startWide } from './wide.mjs';
 
 const options = { skip: notBuilt(), timeout: 240000 };
 // EARLY_MS: a page may show a picture 4 ms before its time, and the clocks that it uses are rounded to milliseconds
 const [WIDTH, HEIGHT] = [640, 360], NEAR_MS = 2500, EARLY_MS = 10;
-const WALLS = `
-views: [{ id: all, title: All, view: "group=temperature&camera=3.5,-7,1,1.5,0,0,0,0,1,30" }]
-walls:
-- { id: wide, tile: { columns: 2, rows: 1, views: all } }
-`;
 let plant;
 
 setUp(options.skip, async (own) => {
-    plant = own(await TinyPlant.create());
-    plant.keepFresh();
-    appendFileSync(plant.file, WALLS);
-    await plant.start();
-    await plant.set({ 'TI-1': 80, 'TI-2': 20, 'PI-1': 5 });
+    plant = await startWide(own);
 });
 
 const url = () => `http://127.0.0.1:${plant.port}/`;

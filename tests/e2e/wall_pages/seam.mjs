@@ -2,7 +2,6 @@
 // Adjacent displays as people see them: the picture continues from one to the next, even though it is shifted to prevent
 // burn-in.
 import assert from 'node:assert/strict';
-import { appendFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { setTimeout as sleep } from 'node:timers/promises';
@@ -11,27 +10,18 @@ import { openPage, SCREENSHOTS, shoot } from '../support/browser.mjs';
 import { PlainClient } from '../support/plain_client.mjs';
 import { pixelsOf } from '../support/png_pixels.mjs';
 import { setUp } from '../support/set_up.mjs';
-import { notBuilt, TinyPlant } from '../support/tiny_plant.mjs';
+import { notBuilt } from '../support/tiny_plant.mjs';
 import { savePng } from '../support/x_display.mjs';
+import { startWide } from './wide.mjs';
 
 const options = { skip: notBuilt(), timeout: 240000 };
 const [WIDTH, HEIGHT] = [640, 360], SCREEN = { viewport: { width: WIDTH, height: HEIGHT } }, MARGIN = 3, STILL = 2;
-const WALLS = `
-views:
-- { id: all, title: All, view: "group=temperature&camera=3.5,-7,1,1.5,0,0,0,0,1,30" }
-walls:
-- { id: wide, tile: { columns: 2, rows: 1, views: all } }
-`;
 const CAMERA = { type: 'camera', seq: 1, eye: [3.5, -7, 1], target: [1.5, 0, 0], up: [0, 0, 1], fov: 30 };
 const shiftNow = () => burnShift(Date.now() * 1000);
 let plant;
 
 setUp(options.skip, async (own) => {
-    plant = own(await TinyPlant.create());
-    plant.keepFresh();
-    appendFileSync(plant.file, WALLS);
-    await plant.start();
-    await plant.set({ 'TI-1': 80, 'TI-2': 20, 'PI-1': 5 });
+    plant = await startWide(own);
 });
 
 // Returns the picture of both displays and the margin around them, drawn for a single client of that size: { width, at(x, y) }.
